@@ -1,0 +1,72 @@
+# Compiler settings shared by every floor, and the two functions that declare a floor.
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+add_library(hbar_flags INTERFACE)
+target_compile_features(hbar_flags INTERFACE cxx_std_20)
+target_compile_options(hbar_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wold-style-cast -Wnon-virtual-dtor
+  -Woverloaded-virtual -Wnull-dereference
+  $<$<BOOL:${HBAR_WARNINGS_AS_ERRORS}>:-Werror>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 reports false positives of these inside Eigen at -O2 and above.
+  target_compile_options(hbar_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds
+                         -Wno-null-dereference -Wno-stringop-overflow)
+endif()
+if(HBAR_SANITIZE)
+  add_compile_options(-fsanitize=${HBAR_SANITIZE} -fno-omit-frame-pointer
+                      -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${HBAR_SANITIZE})
+endif()
+
+# HBAR_ARCH applies only where this machine can run the result: a build for another machine
+# says so with CMAKE_CROSSCOMPILING and is taken at its word.
+if(HBAR_ARCH)
+  include(CheckCXXSourceRuns)
+  set(CMAKE_REQUIRED_FLAGS "-march=${HBAR_ARCH} -O2")
+  check_cxx_source_runs(
+    "#include <cstdlib>
+     int main(int argc, char** argv) {
+       double s = 0.0, a[16];
+       for (int i = 0; i < 16; ++i) a[i] = argc + std::atoi(argv[0]) + i;
+       for (int i = 0; i < 16; ++i) s += a[i] * a[i];
+       return s > 0.0 ? 0 : 1;
+     }" HBAR_ARCH_RUNS)
+  unset(CMAKE_REQUIRED_FLAGS)
+  if(HBAR_ARCH_RUNS OR CMAKE_CROSSCOMPILING)
+    target_compile_options(hbar_flags INTERFACE -march=${HBAR_ARCH})
+  else()
+    message(STATUS "hbar: this machine does not run -march=${HBAR_ARCH}; building for the default")
+  endif()
+endif()
+
+# The headers of every floor are reached as "hbar/FLOOR/file.h", through one include directory.
+set(HBAR_INCLUDE_DIR ${CMAKE_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${HBAR_INCLUDE_DIR}/hbar)
+foreach(floor core scene solvers adjoint)
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${floor} ${HBAR_INCLUDE_DIR}/hbar/${floor} SYMBOLIC)
+endforeach()
+
+function(hbar_install_target target)
+  install(TARGETS ${target} EXPORT hbarTargets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
+# hbar_add_floor(NAME FLOOR SOURCES... ): a library hbar_NAME, exported as hbar::NAME.
+function(hbar_add_floor name)
+  add_library(hbar_${name} ${ARGN})
+  add_library(hbar::${name} ALIAS hbar_${name})
+  set_target_properties(hbar_${name} PROPERTIES EXPORT_NAME ${name}
+                        POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(hbar_${name} PUBLIC cxx_std_20)
+  # One alignment on both sides of the interface, whatever -march each was built with.
+  target_compile_definitions(hbar_${name} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
+  target_include_directories(hbar_${name} PUBLIC
+    $<BUILD_INTERFACE:${HBAR_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(hbar_${name} PRIVATE $<BUILD_INTERFACE:hbar_flags>)
+  hbar_install_target(hbar_${name})
+endfunction()
