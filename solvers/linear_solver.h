@@ -1,0 +1,155 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hbar/core/error.h"
+
+namespace hbar::solvers {
+
+/// Compressed sparse columns, row indices ascending within a column.
+using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+/// One or several right-hand sides, a column each; a vector is a matrix of one column.
+using MatrixView = Eigen::Ref<const Eigen::MatrixXd>;
+/// Like MatrixView, written to.
+using MatrixSpan = Eigen::Ref<Eigen::MatrixXd>;
+
+/// Which system is solved.
+enum class System {
+  kPlain,       ///< A X = B
+  kTransposed,  ///< Aᵀ X = B
+};
+
+/// When a solution is refined and when it is refused, in terms of the scaled residual
+/// ‖b − A x‖∞ / (‖A‖∞ ‖x‖∞ + ‖b‖∞).
+struct ResidualBounds {
+  double refine_above = 1e-14;  ///< one step of iterative refinement above this
+  double refuse_above = 1e-10;  ///< NumericalFailure if it is still above this
+};
+
+/// What a solver has done since it was made.
+struct SolverStatistics {
+  int analyses = 0;             ///< symbolic analyses
+  int factorizations = 0;       ///< numeric factorisations, refactorisations included
+  int refactorizations = 0;     ///< of these, those that kept the earlier pivot order
+  int solves = 0;               ///< right-hand sides solved
+  int refinements = 0;          ///< right-hand sides that needed a step of refinement
+  double worst_residual = 0.0;  ///< largest scaled residual that was accepted
+};
+
+/// Solves A X = B and Aᵀ X = B for a sparse square A: analyse a pattern once, factorise its values
+/// as often as they change, solve as often as wanted.
+///
+/// No solution leaves unchecked: every right-hand side's residual is computed with the matrix as
+/// given, refined once where that helps, and refused if it is too large. An object holds its
+/// workspace and belongs to one thread at a time; different objects are independent.
+class LinearSolver {
+ public:
+  LinearSolver() = default;
+  LinearSolver(const LinearSolver&) = delete;
+  LinearSolver& operator=(const LinearSolver&) = delete;
+  virtual ~LinearSolver() = default;
+
+  /// Name as the factory's, for messages: "block_substitution", "klu", "umfpack".
+  [[nodiscard]] virtual std::string name() const = 0;
+
+  /// Studies the pattern of A; its values are not read.
+  ///
+  /// @param A  square, compressed, row indices ascending  [n x n]
+  /// @throws InvalidInput if A is not that
+  /// @throws NumericalFailure naming a row or column without entries
+  void analyze(const SparseMatrix& A);
+
+  /// Factorises the values of A, and keeps a copy of them for the residual.
+  ///
+  /// @param A  of the pattern last analysed  [n x n]
+  /// @throws InvalidInput if the pattern is another one, or none was analysed
+  /// @throws NumericalFailure if an entry is not finite, or A is singular to working precision
+  ///   (a pivot below 1e-14 of its column, rows scaled to 1): the message names row and column
+  void factorize(const SparseMatrix& A);
+
+  /// Solves A X = B.
+  ///
+  /// @param B  right-hand sides                                  [n x r]
+  /// @param X  solutions; may be the same memory as B            [n x r]
+  /// @throws InvalidInput if the shapes disagree or nothing is factorised
+  /// @throws NumericalFailure if B or X is not finite, or a residual is too large
+  void solve(const MatrixView& B, MatrixSpan X);
+
+  /// Solves Aᵀ X = B; otherwise like solve().
+  ///
+  /// @param B  right-hand sides                                  [n x r]
+  /// @param X  solutions; may be the same memory as B            [n x r]
+  void solve_transposed(const MatrixView& B, MatrixSpan X);
+
+  /// Solves A X = B or Aᵀ X = B; otherwise like solve().
+  ///
+  /// @param B  right-hand sides                                  [n x r]
+  /// @param X  solutions; may be the same memory as B            [n x r]
+  void solve(System system, const MatrixView& B, MatrixSpan X);
+
+  /// Number of rows of the analysed pattern; 0 before the first analysis.
+  [[nodiscard]] int size() const { return static_cast<int>(matrix_.rows()); }
+  [[nodiscard]] const SolverStatistics& statistics() const { return statistics_; }
+  [[nodiscard]] const ResidualBounds& residual_bounds() const { return bounds_; }
+  /// @throws InvalidInput unless 0 ≤ refine_above and 0 < refuse_above
+  void set_residual_bounds(const ResidualBounds& bounds);
+
+ protected:
+  /// Analyses matrix().
+  virtual void do_analyze() = 0;
+  /// Factorises matrix(), whose values are finite. Calls refuse_small_pivots or its like.
+  virtual void do_factorize() = 0;
+  /// Overwrites right-hand sides by solutions.
+  ///
+  /// @param X  finite; columns contiguous  [n x r]
+  virtual void do_solve(System system, MatrixSpan X) = 0;
+
+  /// The matrix last analysed, with the values last factorised  [n x n]
+  [[nodiscard]] const SparseMatrix& matrix() const { return matrix_; }
+  /// Largest magnitude of each row of matrix(): what the rows are divided by for the pivots  [n]
+  [[nodiscard]] const Eigen::VectorXd& row_scale() const { return row_scale_; }
+
+  /// The first pivot that is too small against its column of the row-scaled matrix; -1: none.
+  ///
+  /// @param pivots   of the row-scaled matrix               [n]
+  /// @param columns  column of A of each pivot, from 0      [n]
+  [[nodiscard]] int find_small_pivot(std::span<const double> pivots,
+                                     std::span<const int> columns) const;
+
+  /// Throws the NumericalFailure of a singular matrix.
+  ///
+  /// @param row     row of A of the pivot
+  /// @param column  column of A of the pivot
+  /// @param pivot   of the row-scaled matrix
+  [[noreturn]] void throw_singular(int row, int column, double pivot) const;
+
+  void count_refactorization() { ++statistics_.refactorizations; }
+
+  /// A pivot this small against its column makes a matrix singular to working precision.
+  static constexpr double kPivotFloor = 1e-14;
+
+ private:
+  void measure_matrix();
+  void check_solution(System system, const MatrixView& B, MatrixSpan X);
+  double scaled_residual(System system, const MatrixView& b, const MatrixView& x);
+
+  SparseMatrix matrix_;
+  Eigen::VectorXd row_scale_;
+  Eigen::VectorXd row_sum_;
+  Eigen::VectorXd column_max_;
+  Eigen::VectorXd residual_;
+  Eigen::MatrixXd kept_rhs_;
+  double norm_inf_ = 0.0;
+  double norm_one_ = 0.0;
+  bool analyzed_ = false;
+  bool factorized_ = false;
+  ResidualBounds bounds_;
+  SolverStatistics statistics_;
+};
+
+}  // namespace hbar::solvers
