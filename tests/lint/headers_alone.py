@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""Every library header compiles alone: it includes what it needs.
+
+A header that compiled is remembered in build/lint by the contents of all it includes of hbar, so
+only what changed is compiled again.
+"""
+
+import hashlib
+import os
+import re
+import subprocess
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import lint
+
+FLAGS = ["-std=c++20", "-fsyntax-only", "-DEIGEN_MAX_ALIGN_BYTES=16", "-Wall", "-Wextra", "-Werror",
+         "-x", "c++", "/dev/null"]
+
+
+def eigen_folder():
+    run = subprocess.run(["pkg-config", "--variable=includedir", "eigen3"], capture_output=True,
+                         text=True)
+    folder = run.stdout.strip() or "/usr/include"
+    return folder if folder.endswith("eigen3") else folder + "/eigen3"
+
+
+def closure(root, file, seen):
+    """file and all headers of hbar it includes, directly or not."""
+    if file in seen or not (root / file).is_file():
+        return seen
+    seen.add(file)
+    for included in re.findall(r'#\s*include\s*"hbar/([^"]+)"', lint.read(root, file)):
+        closure(root, included, seen)
+    return seen
+
+
+def key(root, file, compiler):
+    digest = hashlib.sha256(compiler.encode())
+    for part in sorted(closure(root, file, set())):
+        digest.update(part.encode() + b"\0" + (root / part).read_bytes())
+    return digest.hexdigest()
+
+
+def check(root, files):
+    command = [os.environ.get("CXX", "g++"), *FLAGS, "-isystem", eigen_folder()]
+    compiler = " ".join(command) + subprocess.run([command[0], "--version"], capture_output=True,
+                                                  text=True).stdout
+    memory = lint.REPOSITORY / "build" / "lint"
+    memory.mkdir(parents=True, exist_ok=True)
+
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "hbar").mkdir()
+        for floor in lint.LIBRARY:
+            Path(folder, "hbar", floor).symlink_to(root / floor)
+
+        def compile_alone(file):
+            remembered = memory / key(root, file, compiler)
+            if remembered.exists():
+                return []
+            run = subprocess.run([*command, "-I", folder, "-include", f"hbar/{file}"], cwd=folder,
+                                 capture_output=True, text=True)
+            if run.returncode == 0:
+                remembered.touch()
+                return []
+            first = re.search(r"hbar/(\S+?):(\d+):\d+: (?:fatal )?error: (.*)", run.stderr)
+            where = (first.group(1), int(first.group(2))) if first else (file, 1)
+            text = first.group(3) if first else run.stderr.strip()[:200]
+            return [lint.Finding(*where, "alone", f"{file} alone: {text}")]
+
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            for findings in pool.map(compile_alone, lint.cpp(files, lint.LIBRARY, (".h",))):
+                yield from findings
+
+
+if __name__ == "__main__":
+    lint.main("headers_alone", check, lambda files: lint.cpp(files, lint.LIBRARY, (".h",)))

@@ -1,0 +1,11 @@
+#!/bin/sh
+# Runs every checker: tests/lint/run.sh [--planted]
+#
+# One line a checker, `name: ok (N files)`, or its findings as `file:line: rule: text`; exits with 1
+# if there is one. --planted runs each over what is planted for it in tests/planted, instead.
+cd "$(dirname "$0")" || exit 2
+failed=0
+for checker in format floors headers_alone length banned documented twins links; do
+  python3 -B "$checker.py" "$@" || failed=1
+done
+exit $failed

@@ -1,0 +1,2 @@
+// planted: third-party
+#include <coin/IpTNLP.hpp>

@@ -1,0 +1,2 @@
+// planted-file: twin
+int forgotten() { return 1; }
