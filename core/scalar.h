@@ -5,8 +5,9 @@
 #include <concepts>
 #include <limits>
 
-#if EIGEN_MAX_ALIGN_BYTES != 16 && EIGEN_MAX_ALIGN_BYTES != 0
-#error "hbar is built with EIGEN_MAX_ALIGN_BYTES=16: define it so before including Eigen (CMake does)"
+#if EIGEN_DEFAULT_ALIGN_BYTES != 16
+#error \
+    "hbar is built with EIGEN_MAX_ALIGN_BYTES=16; define it so for the whole program (hbar::hbar does)"
 #endif
 
 namespace hbar {

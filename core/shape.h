@@ -1,0 +1,51 @@
+#pragma once
+
+#include <variant>
+
+#include "hbar/core/scalar.h"
+
+namespace hbar {
+
+/// The solids a body can be. Lengths are the scene's; every shape stands in the body frame, centred
+/// at its centre of mass.
+struct Cuboid {
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();  ///< side lengths along x, y, z  [3]
+  friend bool operator==(const Cuboid& a, const Cuboid& b) { return a.size == b.size; }
+};
+/// A ball.
+struct Sphere {
+  double radius = 1.0;  ///< length
+  friend bool operator==(const Sphere&, const Sphere&) = default;
+};
+/// A right circular cylinder about z.
+struct Cylinder {
+  double radius = 1.0;  ///< length
+  double length = 1.0;  ///< end face to end face, length
+  friend bool operator==(const Cylinder&, const Cylinder&) = default;
+};
+/// A cylinder about z closed by two half-balls.
+struct Capsule {
+  double radius = 1.0;  ///< length
+  double length = 1.0;  ///< between the centres of the half-balls, length
+  friend bool operator==(const Capsule&, const Capsule&) = default;
+};
+/// A body known by its mass properties alone (mesh and abstract bodies).
+struct NoShape {
+  friend bool operator==(const NoShape&, const NoShape&) = default;
+};
+using Shape = std::variant<NoShape, Cuboid, Sphere, Cylinder, Capsule>;
+
+/// Mass and principal moments of a solid about its centre of mass.
+struct MassProperties {
+  double mass = 0.0;                                  ///< mass
+  Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  ///< principal moments, mass·length² [3]
+};
+
+/// Mass properties of a homogeneous solid.
+///
+/// @param shape    any shape but NoShape; lengths > 0
+/// @param density  mass per volume, > 0
+/// @throws InvalidInput if a length or the density is not positive, or the shape is NoShape
+[[nodiscard]] MassProperties solid_mass_properties(const Shape& shape, double density);
+
+}  // namespace hbar
