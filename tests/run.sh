@@ -1,0 +1,69 @@
+#!/bin/sh
+# Installs what is missing, builds hbar and runs all tests, from a bare Debian 12 or Ubuntu 24.04:
+#
+#   tests/run.sh                 release build, checkers, tests, a stranger's project
+#   tests/run.sh --dev           and the same tests under address and undefined-behaviour sanitizers
+#   tests/run.sh --tsan          and under the thread sanitizer
+#   tests/run.sh --no-install    install no packages
+#
+# Ends with ctest's closing line over all of it, and exits with 0 only if everything passed.
+cd "$(dirname "$0")/.." || exit 2
+
+install=yes
+presets=release
+for option in "$@"; do
+  case $option in
+    --dev) presets="$presets dev" ;;
+    --tsan) presets="$presets tsan" ;;
+    --no-install) install=no ;;
+    *) sed -n '2,9s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+  esac
+done
+
+passed=0
+failed=0
+
+finish() {
+  total=$((passed + failed))
+  [ "$total" -gt 0 ] || { total=1; failed=1; }
+  echo
+  echo "$((100 * (total - failed) / total))% tests passed, $failed tests failed out of $total"
+  [ "$failed" -eq 0 ]
+  exit
+}
+
+# A step that is no test: its failure is one failed test and the end.
+step() {
+  echo "== $*"
+  "$@" || { echo "tests/run.sh: failed: $*" >&2; failed=$((failed + 1)); finish; }
+}
+
+# ctest of one preset; counts what it ran.
+run_tests() {
+  echo "== ctest --preset $1"
+  log=build/$1/ctest.log
+  # The checkers and the stranger's project are the same in every build: once is enough.
+  once=; [ "$1" = release ] || once="-LE once"
+  { ctest --preset "$1" --no-tests=error --schedule-random -j "$(nproc)" $once; echo "status $?"; } \
+    2>&1 | tee "$log" | grep -v '^status '
+  counts=$(sed -n 's/.* tests passed, \([0-9]*\) tests failed out of \([0-9]*\).*/\1 \2/p' "$log")
+  status=$(sed -n 's/^status //p' "$log")
+  bad=${counts% *}
+  all=${counts#* }
+  if [ -z "$counts" ] || { [ "$status" != 0 ] && [ "$bad" = 0 ]; }; then
+    failed=$((failed + 1))
+  fi
+  failed=$((failed + ${bad:-0}))
+  passed=$((passed + ${all:-0} - ${bad:-0}))
+}
+
+[ "$install" = no ] || step tests/install_packages.sh test
+
+launcher=
+! command -v ccache >/dev/null || launcher=-DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+for preset in $presets; do
+  step cmake --preset "$preset" -DHBAR_BUILD_TESTS=ON $launcher
+  step cmake --build --preset "$preset"
+  run_tests "$preset"
+done
+finish
