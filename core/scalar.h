@@ -5,7 +5,7 @@
 #include <concepts>
 #include <limits>
 
-#if EIGEN_DEFAULT_ALIGN_BYTES != 16
+#if EIGEN_MAX_ALIGN_BYTES != 16 || EIGEN_MAX_STATIC_ALIGN_BYTES != 16
 #error \
     "hbar is built with EIGEN_MAX_ALIGN_BYTES=16; define it so for the whole program (hbar::hbar does)"
 #endif
@@ -53,6 +53,7 @@ struct Dual {
   friend constexpr auto operator<=>(const Dual& a, const Dual& b) { return a.value <=> b.value; }
 };
 
+/// Elementary functions, each with its derivative.
 [[nodiscard]] inline Dual sqrt(const Dual& a) {
   const double root = std::sqrt(a.value);
   return {root, a.slope / (2.0 * root)};
