@@ -49,8 +49,17 @@ foreach(floor core scene solvers adjoint)
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${floor} ${HBAR_INCLUDE_DIR}/hbar/${floor} SYMBOLIC)
 endforeach()
 
+# An optional part has an export set of its own: who does without it needs none of its dependencies.
+set(HBAR_OPTIONAL_COMPONENTS umfpack ipopt)
+
 function(hbar_install_target target)
-  install(TARGETS ${target} EXPORT hbarTargets
+  set(export hbarTargets)
+  foreach(component IN LISTS HBAR_OPTIONAL_COMPONENTS)
+    if(target STREQUAL hbar_${component})
+      set(export ${target}Targets)
+    endif()
+  endforeach()
+  install(TARGETS ${target} EXPORT ${export}
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -1,7 +1,34 @@
 # Installation: headers under include/hbar/FLOOR, libraries, and find_package(hbar).
 
-foreach(floor core scene solvers adjoint)
-  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/${floor}/
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hbar/${floor}
-          FILES_MATCHING PATTERN "*.h")
+set(not_built)
+foreach(component IN LISTS HBAR_OPTIONAL_COMPONENTS)
+  if(NOT TARGET hbar_${component})
+    list(APPEND not_built PATTERN ${component}.h EXCLUDE)
+  endif()
 endforeach()
+foreach(floor core scene solvers contact adjoint)
+  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${floor})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/${floor}/
+            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hbar/${floor}
+            FILES_MATCHING PATTERN "*.h" ${not_built})
+  endif()
+endforeach()
+
+set(HBAR_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/hbar)
+install(EXPORT hbarTargets NAMESPACE hbar:: DESTINATION ${HBAR_CONFIG_DIR})
+foreach(component IN LISTS HBAR_OPTIONAL_COMPONENTS)
+  if(TARGET hbar_${component})
+    install(EXPORT hbar_${component}Targets NAMESPACE hbar:: DESTINATION ${HBAR_CONFIG_DIR})
+  endif()
+endforeach()
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/hbarConfig.cmake.in
+                              ${PROJECT_BINARY_DIR}/hbarConfig.cmake
+                              INSTALL_DESTINATION ${HBAR_CONFIG_DIR}
+                              NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/hbarConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/hbarConfig.cmake ${PROJECT_BINARY_DIR}/hbarConfigVersion.cmake
+        ${PROJECT_SOURCE_DIR}/cmake/FindSuiteSparse.cmake
+        ${PROJECT_SOURCE_DIR}/cmake/FindHbarIpopt.cmake
+        DESTINATION ${HBAR_CONFIG_DIR})
