@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "hbar/core/model.h"
+#include "hbar/core/spatial_inertia.h"
+
+namespace hbar {
+
+/// The numbers of a model with parameters applied: what the recursions read.
+///
+/// `nominal` gives the model's own; apply_parameters (parameters.h) changes the rest.
+template <Scalar S>
+struct Mechanism {
+  std::vector<RigidTransform<S>> X_PJ;          ///< per link: joint frame at rest in the parent's
+  std::vector<RigidTransform<S>> X_JB;          ///< per link: body frame in the joint frame
+  VectorX<S> mass;                              ///< per link                             [links]
+  Eigen::Matrix<S, 3, Eigen::Dynamic> moments;  ///< per link, principal moments      [3 x links]
+  VectorX<S> stiffness;                         ///< per link                             [links]
+  VectorX<S> damping;                           ///< per link                             [links]
+  VectorX<S> motor_P;                           ///< per motor                            [motors]
+  VectorX<S> motor_D;                           ///< per motor                            [motors]
+  Vector3<S> gravity;                           ///< in the world frame, length/time²     [3]
+  std::vector<SpatialInertia<S>> inertia;       ///< per link: of the body, from the joint frame
+
+  /// Recomputes `inertia` after mass, moments or X_JB have changed.
+  void update_inertia();
+};
+
+/// The mechanism whose parameters are the model's own.
+template <Scalar S>
+[[nodiscard]] Mechanism<S> nominal_mechanism(const Model& model);
+
+}  // namespace hbar

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hbar/core/mechanism.h"
+
+namespace hbar {
+
+/// Classes of design parameter, in the order in which they are listed: Table II of the document by
+/// its roman numbers, then motor gains and gravity. III (contact points) and VI (contact scale) are
+/// reserved for contact.
+enum class ParameterKind {
+  kJointTransform,  ///< I: rotation vector w and translation t, X_PJ = (R̄ exp([w]), p̄ + t)
+  kBodyTransform,   ///< II: the same for X_JB
+  kMass,            ///< IV
+  kInertia,         ///< IV: principal moments
+  kStiffness,       ///< V
+  kDamping,         ///< V
+  kMotorP,
+  kMotorD,
+  kGravity
+};
+
+/// The classes, with the name each has in messages and reports.
+[[nodiscard]] const std::vector<ParameterKind>& parameter_kinds();
+[[nodiscard]] std::string_view kind_name(ParameterKind kind);
+
+/// One scalar design parameter.
+struct Parameter {
+  ParameterKind kind = ParameterKind::kJointTransform;
+  int owner = 0;         ///< link or motor; 0 for gravity
+  int component = 0;     ///< within its kind and owner
+  std::string name;      ///< as in scene_format.md: "joint.NAME.rotation.x", "body.NAME.mass", …
+  std::string unit;      ///< in the model's unit system
+  double nominal = 0.0;  ///< the model's own value; 0 for transformations
+  double lower = 0.0;    ///< physical bound
+  double upper = 0.0;
+};
+
+/// Scalars of one kind and owner that stand together in p.
+struct ParameterBlock {
+  ParameterKind kind = ParameterKind::kJointTransform;
+  int owner = 0;
+  int first = 0;  ///< index in p
+  int size = 0;
+};
+
+/// Which parameters are free, and in which order they stand in the vector p: by kind, then by link
+/// (or motor) in file order, then by component. The single registry: everything that reads or
+/// writes p goes through it.
+class ParameterSet {
+ public:
+  /// No parameter.
+  ParameterSet() = default;
+
+  /// Every parameter of the model.
+  [[nodiscard]] static ParameterSet all(const Model& model);
+  /// Those that the links' design masks select (motor gains and gravity have no bit).
+  [[nodiscard]] static ParameterSet masked(const Model& model);
+  /// Those named: a full name, or a prefix that ends at a dot ("joint.knee", "body.shin.inertia").
+  /// @throws InvalidInput for a name that matches nothing, with the nearest that does
+  [[nodiscard]] static ParameterSet named(const Model& model,
+                                          const std::vector<std::string>& names);
+
+  [[nodiscard]] int size() const { return static_cast<int>(parameters_.size()); }
+  [[nodiscard]] const std::vector<Parameter>& parameters() const { return parameters_; }
+  [[nodiscard]] const std::vector<ParameterBlock>& blocks() const { return blocks_; }
+  [[nodiscard]] const Parameter& operator[](int i) const {
+    return parameters_[static_cast<std::size_t>(i)];
+  }
+
+  /// Index in p of a full name.
+  /// @throws InvalidInput if it is not in the set
+  [[nodiscard]] int find(std::string_view name) const;
+
+  [[nodiscard]] Eigen::VectorXd nominal() const;  ///< [size]
+  [[nodiscard]] Eigen::VectorXd lower() const;    ///< [size]
+  [[nodiscard]] Eigen::VectorXd upper() const;    ///< [size]
+
+ private:
+  explicit ParameterSet(std::vector<Parameter> parameters);
+
+  std::vector<Parameter> parameters_;
+  std::vector<ParameterBlock> blocks_;
+};
+
+/// Sets a mechanism's numbers to the model's own, with p in place of those in the set.
+///
+/// @param p  values of the set's parameters                                     [set.size()]
+/// @throws InvalidInput if p has another size, is not finite, or makes a mass or a moment not
+///         positive or a triangle of moments impossible; the message names the parameter
+template <Scalar S>
+void apply_parameters(const Model& model, const ParameterSet& set, const VectorView<S>& p,
+                      Mechanism<S>& mechanism);
+
+}  // namespace hbar

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "hbar/core/dynamics.h"
+
+namespace hbar {
+
+/// The transpose of the derivatives of inverse dynamics, applied to one vector z in O(nodes).
+///
+/// All of zᵀ ∂ID/∂(q, q̇, a) and of zᵀ ∂ID/∂p comes from two sums along the tree: the twist
+/// W = Σ_path J_l z_l that z gives each node, and per subtree a = I^C W_λ + Σ z_l I^C_l J_l and
+/// b likewise with (B^C)ᵀ. A frame that displaces a subtree (joint coordinate, joint
+/// transformation, body transformation: formulation §3) then has one covector
+///
+///     G = −A_λ ×* a + V_λ ×* (V_λ ×* a) − V_λ ×* b − W_λ ×* F
+///
+/// with zᵀ ∂ID/∂D = G·D for each of its displacement twists D. Sized once, reused; call after
+/// subtree_dynamics with the same motion.
+template <Scalar S>
+class Pullback {
+ public:
+  explicit Pullback(const Model& model);
+
+  /// @param z  weights on the rows of ID                                         [dof]
+  /// Allocates nothing.
+  void compute(const Model& model, const Motion<S>& motion, const Dynamics<S>& dynamics,
+               const VectorView<S>& z);
+
+  VectorX<S> by_q;     ///< zᵀ ∂ID/∂q                                              [dof]
+  VectorX<S> by_qdot;  ///< zᵀ ∂ID/∂q̇                                              [dof]
+  VectorX<S> by_a;     ///< zᵀ M                                                   [dof]
+
+  /// Twist that z gives a node: Σ over its path of J_l z_l.                       [6]
+  [[nodiscard]] const Vector6<S>& twist(int node) const {
+    return twists_[static_cast<std::size_t>(node)];
+  }
+  /// Covector of displacing everything from a joint's rest frame on; `node` is the first of its
+  /// joint.                                                                       [6]
+  [[nodiscard]] const Vector6<S>& joint_frame(int node) const {
+    return joint_frames_[static_cast<std::size_t>(node)];
+  }
+  /// Covector of displacing a link's body alone, in its joint frame.              [6]
+  [[nodiscard]] Vector6<S> body_frame(const Model& model, const Motion<S>& motion,
+                                      const Dynamics<S>& dynamics, int link) const;
+  /// zᵀ ∂ID/∂gravity.                                                             [3]
+  [[nodiscard]] const Vector3<S>& by_gravity() const { return by_gravity_; }
+
+ private:
+  std::vector<Vector6<S>> twists_;
+  std::vector<Vector6<S>> joint_frames_;
+  std::vector<Vector6<S>> wrench_sums_;    // Σ over the subtree of z_l I^C_l J_l
+  std::vector<Vector3<S>> coriolis_sums_;  // the same with (B^C_l)ᵀ, angular half
+  Vector3<S> by_gravity_;
+};
+
+}  // namespace hbar
