@@ -2,12 +2,12 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "hbar/core/error.h"
+#include "hbar/core/scalar.h"
 
 namespace hbar::solvers {
 
@@ -136,7 +136,7 @@ class LinearSolver {
  private:
   void measure_matrix();
   void check_solution(System system, const MatrixView& B, MatrixSpan X);
-  double scaled_residual(System system, const MatrixView& b, const MatrixView& x);
+  double scaled_residual(System system, const VectorView<double>& b, const VectorView<double>& x);
 
   SparseMatrix matrix_;
   Eigen::VectorXd row_scale_;

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "hbar/solvers/ipopt.h"
+
+namespace Ipopt {
+class IpoptApplication;
+}  // namespace Ipopt
+
+namespace hbar::solvers {
+
+/// Hands options to Ipopt, each checked first, so that Ipopt has nothing to print.
+///
+/// @throws InvalidInput if an option is unknown (naming the nearest one), of another type, out of
+///   its range, or one that IpoptOptions decides
+void set_ipopt_options(Ipopt::IpoptApplication& application, const IpoptOptions& options);
+
+}  // namespace hbar::solvers

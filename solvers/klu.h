@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "hbar/solvers/linear_solver.h"
+
+namespace hbar::solvers {
+
+/// SuiteSparse KLU (LGPL): sparse LU by block triangular form, without BLAS, the same bits on every
+/// machine. A second factorize() keeps the pivot order of the first as long as the pivots stay
+/// sound, and chooses a new one otherwise.
+[[nodiscard]] std::unique_ptr<LinearSolver> make_klu();
+
+}  // namespace hbar::solvers

@@ -1,0 +1,234 @@
+#include "hbar/solvers/linear_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hbar::solvers {
+namespace {
+
+void refuse_unusable_pattern(const std::string& solver, const SparseMatrix& A) {
+  const std::string where = concat(solver, ": analyze: ");
+  if (A.rows() != A.cols() || A.rows() == 0) {
+    throw InvalidInput(concat(where, "the matrix is ", A.rows(), " x ", A.cols(),
+                              "; expected a square one with at least one row"));
+  }
+  if (!A.isCompressed()) {
+    throw InvalidInput(concat(where, "the matrix is not compressed; call makeCompressed() first"));
+  }
+  std::vector<char> row_has_entry(static_cast<std::size_t>(A.rows()), 0);
+  const int* rows = A.innerIndexPtr();
+  for (int j = 0; j < A.cols(); ++j) {
+    const int begin = A.outerIndexPtr()[j];
+    const int end = A.outerIndexPtr()[j + 1];
+    for (int k = begin; k < end; ++k) {
+      if (rows[k] < 0 || rows[k] >= A.rows() || (k > begin && rows[k] <= rows[k - 1])) {
+        throw InvalidInput(concat(where, "entry ", k - begin, " of column ", j, " is in row ",
+                                  rows[k], "; expected ascending rows from 0 to ", A.rows() - 1));
+      }
+      row_has_entry[static_cast<std::size_t>(rows[k])] = 1;
+    }
+    if (begin == end) {
+      throw NumericalFailure(concat(where, "the matrix is singular: column ", j,
+                                    " has no entry; look for an unknown that no equation uses"));
+    }
+  }
+  const auto empty = std::find(row_has_entry.begin(), row_has_entry.end(), 0);
+  if (empty != row_has_entry.end()) {
+    throw NumericalFailure(concat(where, "the matrix is singular: row ",
+                                  empty - row_has_entry.begin(),
+                                  " has no entry; look for an equation without unknowns"));
+  }
+}
+
+bool same_pattern(const SparseMatrix& A, const SparseMatrix& B) {
+  if (A.rows() != B.rows() || A.cols() != B.cols() || !A.isCompressed()) return false;
+  return A.nonZeros() == B.nonZeros() &&
+         std::equal(A.outerIndexPtr(), A.outerIndexPtr() + A.cols() + 1, B.outerIndexPtr()) &&
+         std::equal(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros(), B.innerIndexPtr());
+}
+
+const char* symbol(System system) { return system == System::kPlain ? "A x = b" : "A^T x = b"; }
+
+}  // namespace
+
+void LinearSolver::analyze(const SparseMatrix& A) {
+  refuse_unusable_pattern(name(), A);
+  analyzed_ = false;
+  factorized_ = false;
+  matrix_ = A;
+  row_scale_.setZero(A.rows());
+  row_sum_.setZero(A.rows());
+  column_max_.setZero(A.cols());
+  residual_.setZero(A.rows());
+  do_analyze();
+  ++statistics_.analyses;
+  analyzed_ = true;
+}
+
+void LinearSolver::factorize(const SparseMatrix& A) {
+  if (!analyzed_) {
+    throw InvalidInput(concat(name(), ": factorize: no pattern was analysed; call analyze first"));
+  }
+  if (!same_pattern(A, matrix_)) {
+    throw InvalidInput(concat(name(), ": factorize: the matrix (", A.rows(), " x ", A.cols(), ", ",
+                              A.nonZeros(), " entries) has another pattern than the one analysed (",
+                              matrix_.rows(), " x ", matrix_.cols(), ", ", matrix_.nonZeros(),
+                              " entries); call analyze again"));
+  }
+  factorized_ = false;
+  std::copy(A.valuePtr(), A.valuePtr() + A.nonZeros(), matrix_.valuePtr());
+  measure_matrix();
+  do_factorize();
+  ++statistics_.factorizations;
+  factorized_ = true;
+}
+
+/// Norms and scales of matrix_; refuses entries that are not finite.
+void LinearSolver::measure_matrix() {
+  const int* begin = matrix_.outerIndexPtr();
+  const int* rows = matrix_.innerIndexPtr();
+  const double* values = matrix_.valuePtr();
+  row_scale_.setZero();
+  row_sum_.setZero();
+  norm_one_ = 0.0;
+  for (int j = 0; j < matrix_.cols(); ++j) {
+    double column_sum = 0.0;
+    for (int k = begin[j]; k < begin[j + 1]; ++k) {
+      const double magnitude = std::abs(values[k]);
+      if (!std::isfinite(magnitude)) {
+        throw NumericalFailure(concat(name(), ": factorize: the entry in row ", rows[k],
+                                      ", column ", j, " is ", values[k],
+                                      "; check the state the matrix was computed at"));
+      }
+      row_scale_[rows[k]] = std::max(row_scale_[rows[k]], magnitude);
+      row_sum_[rows[k]] += magnitude;
+      column_sum += magnitude;
+    }
+    norm_one_ = std::max(norm_one_, column_sum);
+  }
+  norm_inf_ = row_sum_.maxCoeff();
+  for (int j = 0; j < matrix_.cols(); ++j) {
+    double largest = 0.0;
+    for (int k = begin[j]; k < begin[j + 1]; ++k) {
+      const double scale = row_scale_[rows[k]];
+      if (scale > 0.0) largest = std::max(largest, std::abs(values[k]) / scale);
+    }
+    column_max_[j] = largest;
+  }
+}
+
+int LinearSolver::find_small_pivot(std::span<const double> pivots,
+                                   std::span<const int> columns) const {
+  for (std::size_t k = 0; k < pivots.size(); ++k) {
+    // Written so that a pivot that is not a number is found, too.
+    if (!(std::abs(pivots[k]) > kPivotFloor * column_max_[columns[k]])) return static_cast<int>(k);
+  }
+  return -1;
+}
+
+void LinearSolver::throw_singular(int row, int column, double pivot) const {
+  throw NumericalFailure(concat(name(), ": factorize: the matrix (", matrix_.rows(), " x ",
+                                matrix_.cols(), ") is singular to working precision: the pivot in ",
+                                "row ", row, ", column ", column, " is ", pivot,
+                                "; look for an unknown without stiffness or inertia, or for ",
+                                "equations that repeat each other"));
+}
+
+void LinearSolver::solve(const MatrixView& B, MatrixSpan X) { solve(System::kPlain, B, X); }
+
+void LinearSolver::solve_transposed(const MatrixView& B, MatrixSpan X) {
+  solve(System::kTransposed, B, X);
+}
+
+void LinearSolver::solve(System system, const MatrixView& B, MatrixSpan X) {
+  if (!factorized_) {
+    throw InvalidInput(concat(name(), ": solve: no matrix is factorised; call factorize first"));
+  }
+  if (B.rows() != matrix_.rows() || X.rows() != B.rows() || X.cols() != B.cols()) {
+    throw InvalidInput(concat(name(), ": solve: the right-hand sides are ", B.rows(), " x ",
+                              B.cols(), " and the solutions ", X.rows(), " x ", X.cols(),
+                              "; expected ", matrix_.rows(), " rows and equal shapes"));
+  }
+  if (!B.allFinite()) {
+    for (Eigen::Index j = 0; j < B.cols(); ++j) {
+      for (Eigen::Index i = 0; i < B.rows(); ++i) {
+        if (std::isfinite(B(i, j))) continue;
+        throw NumericalFailure(concat(name(), ": solve: row ", i, " of right-hand side ", j, " is ",
+                                      B(i, j), "; check what it was computed from"));
+      }
+    }
+  }
+  if (X.data() == B.data() && X.size() > 0) {
+    kept_rhs_ = B;
+    do_solve(system, X);
+    check_solution(system, kept_rhs_, X);
+  } else {
+    X = B;
+    do_solve(system, X);
+    check_solution(system, B, X);
+  }
+  statistics_.solves += static_cast<int>(B.cols());
+}
+
+/// Leaves b − A x in residual_, and returns it scaled; not a number if x is not finite.
+double LinearSolver::scaled_residual(System system, const VectorView<double>& b,
+                                     const VectorView<double>& x) {
+  const int* begin = matrix_.outerIndexPtr();
+  const int* rows = matrix_.innerIndexPtr();
+  const double* values = matrix_.valuePtr();
+  residual_ = b;
+  if (system == System::kPlain) {
+    for (int j = 0; j < matrix_.cols(); ++j) {
+      const double x_j = x[j];
+      if (x_j == 0.0) continue;
+      for (int k = begin[j]; k < begin[j + 1]; ++k) residual_[rows[k]] -= values[k] * x_j;
+    }
+  } else {
+    for (int j = 0; j < matrix_.cols(); ++j) {
+      double sum = 0.0;
+      for (int k = begin[j]; k < begin[j + 1]; ++k) sum += values[k] * x[rows[k]];
+      residual_[j] -= sum;
+    }
+  }
+  if (!x.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  const double norm = system == System::kPlain ? norm_inf_ : norm_one_;
+  const double size = norm * x.lpNorm<Eigen::Infinity>() + b.lpNorm<Eigen::Infinity>();
+  return size > 0.0 ? residual_.lpNorm<Eigen::Infinity>() / size : 0.0;
+}
+
+/// Refines a solution that needs it and refuses one that is wrong.
+void LinearSolver::check_solution(System system, const MatrixView& B, MatrixSpan X) {
+  for (Eigen::Index j = 0; j < B.cols(); ++j) {
+    double residual = scaled_residual(system, B.col(j), X.col(j));
+    if (residual > bounds_.refine_above) {
+      do_solve(system, residual_);
+      residual_ += X.col(j);
+      const Eigen::VectorXd refined = residual_;
+      const double refined_residual = scaled_residual(system, B.col(j), refined);
+      ++statistics_.refinements;
+      if (refined_residual < residual) {
+        X.col(j) = refined;
+        residual = refined_residual;
+      }
+    }
+    if (!(residual <= bounds_.refuse_above)) {
+      throw NumericalFailure(
+          concat(name(), ": the scaled residual of ", symbol(system), ", right-hand side ", j,
+                 ", is ", residual, " after refinement; allowed: ", bounds_.refuse_above, " (",
+                 matrix_.rows(), " x ", matrix_.cols(),
+                 " matrix); try another solver, or bring the unknowns to similar sizes"));
+    }
+    statistics_.worst_residual = std::max(statistics_.worst_residual, residual);
+  }
+}
+
+void LinearSolver::set_residual_bounds(const ResidualBounds& bounds) {
+  if (!(bounds.refine_above >= 0.0) || !(bounds.refuse_above > 0.0)) {
+    throw InvalidInput(concat(name(), ": residual bounds: refine_above is ", bounds.refine_above,
+                              " and refuse_above ", bounds.refuse_above,
+                              "; expected 0 or more, and more than 0"));
+  }
+  bounds_ = bounds;
+}
+
+}  // namespace hbar::solvers

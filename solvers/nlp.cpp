@@ -1,0 +1,103 @@
+#include "hbar/solvers/nlp.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hbar::solvers {
+namespace {
+
+void refuse_size(const char* what, Eigen::Index got, Eigen::Index expected) {
+  if (got == expected) return;
+  throw InvalidInput(concat("nlp: ", what, " has ", got, " entries; expected ", expected));
+}
+
+std::string item(const char* kind, Eigen::Index i, const std::vector<std::string>& names) {
+  return concat("nlp: ", kind, " ", i, " (", names[static_cast<std::size_t>(i)], ")");
+}
+
+void refuse_limits(const char* kind, Eigen::Index i, const std::vector<std::string>& names,
+                   double lower, double upper) {
+  if (std::isnan(lower) || std::isnan(upper)) {
+    throw InvalidInput(concat(item(kind, i, names), ": the bounds are ", lower, " and ", upper,
+                              "; expected numbers, infinite where there is no bound"));
+  }
+  if (lower > upper) {
+    throw InvalidInput(concat(item(kind, i, names), ": the lower bound ", lower,
+                              " exceeds the upper bound ", upper));
+  }
+}
+
+void validate_variables(const NlpVariables& v) {
+  const Eigen::Index n = v.start.size();
+  if (n == 0) throw InvalidInput("nlp: there are no variables; expected at least one");
+  refuse_size("lower bounds of the variables", v.lower.size(), n);
+  refuse_size("upper bounds of the variables", v.upper.size(), n);
+  refuse_size("names of the variables", static_cast<Eigen::Index>(v.names.size()), n);
+  if (v.scale.size() != 0) refuse_size("scale of the variables", v.scale.size(), n);
+  bool any_free = false;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    refuse_limits("variable", i, v.names, v.lower[i], v.upper[i]);
+    if (!std::isfinite(v.start[i])) {
+      throw InvalidInput(concat(item("variable", i, v.names), ": the start is ", v.start[i],
+                                "; expected a finite number"));
+    }
+    if (v.start[i] < v.lower[i] || v.start[i] > v.upper[i]) {
+      throw InvalidInput(concat(item("variable", i, v.names), ": the start ", v.start[i],
+                                " is outside its bounds ", v.lower[i], " to ", v.upper[i]));
+    }
+    if (v.scale.size() != 0 && !(v.scale[i] > 0.0 && std::isfinite(v.scale[i]))) {
+      throw InvalidInput(concat(item("variable", i, v.names), ": the scale is ", v.scale[i],
+                                "; expected a positive number"));
+    }
+    any_free = any_free || v.lower[i] < v.upper[i];
+  }
+  if (!any_free) {
+    throw InvalidInput(concat("nlp: no free variable: all ", n,
+                              " have equal lower and upper bounds; widen at least one"));
+  }
+}
+
+}  // namespace
+
+void validate(const Nlp& nlp) {
+  const NlpVariables& v = nlp.variables();
+  validate_variables(v);
+  const NlpConstraints& c = nlp.constraint_limits();
+  const Eigen::Index n = v.start.size();
+  const Eigen::Index m = c.lower.size();
+  refuse_size("upper bounds of the constraints", c.upper.size(), m);
+  refuse_size("names of the constraints", static_cast<Eigen::Index>(c.names.size()), m);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    refuse_limits("constraint", i, c.names, c.lower[i], c.upper[i]);
+  }
+  const JacobianPattern& pattern = nlp.jacobian_pattern();
+  refuse_size("columns of the Jacobian pattern", static_cast<Eigen::Index>(pattern.columns.size()),
+              static_cast<Eigen::Index>(pattern.rows.size()));
+  for (std::size_t k = 0; k < pattern.rows.size(); ++k) {
+    if (pattern.rows[k] < 0 || pattern.rows[k] >= m || pattern.columns[k] < 0 ||
+        pattern.columns[k] >= n) {
+      throw InvalidInput(concat("nlp: entry ", k, " of the Jacobian pattern is at row ",
+                                pattern.rows[k], ", column ", pattern.columns[k],
+                                "; the Jacobian is ", m, " x ", n));
+    }
+  }
+}
+
+Violation largest_violation(const Nlp& nlp, const Eigen::VectorXd& x, const Eigen::VectorXd& c) {
+  Violation worst;
+  const auto add = [&worst](double value, double lower, double upper, const std::string& name) {
+    const double amount = std::max(lower - value, value - upper);
+    if (amount > worst.amount) worst = {amount, name};
+  };
+  const NlpConstraints& limits = nlp.constraint_limits();
+  for (Eigen::Index i = 0; i < c.size(); ++i) {
+    add(c[i], limits.lower[i], limits.upper[i], limits.names[static_cast<std::size_t>(i)]);
+  }
+  const NlpVariables& v = nlp.variables();
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    add(x[i], v.lower[i], v.upper[i], v.names[static_cast<std::size_t>(i)]);
+  }
+  return worst;
+}
+
+}  // namespace hbar::solvers
