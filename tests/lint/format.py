@@ -23,11 +23,15 @@ def check(root, files):
         return
     run = subprocess.run([clang_format(), "--dry-run", "-Werror", *sources], cwd=root,
                          capture_output=True, text=True)
+    lines = {}
     for line in run.stderr.splitlines():
         match = re.match(r"(.+?):(\d+):\d+: error: .*clang-formatted", line)
         if match:
-            yield lint.Finding(match.group(1), int(match.group(2)), "format",
-                               "clang-format 14 writes this differently")
+            lines.setdefault(match.group(1), set()).add(int(match.group(2)))
+    for file, wrong in lines.items():
+        yield lint.Finding(file, min(wrong), "format",
+                           f"clang-format 14 writes {len(wrong)} lines differently")
+
 
 
 if __name__ == "__main__":
