@@ -1,0 +1,324 @@
+#include "hbar/core/parameter_derivatives.h"
+
+#include "hbar/core/rotation.h"
+
+namespace hbar {
+namespace {
+
+/// World twists of a frame's six parameters (w, t) at the values w.
+template <Scalar S>
+struct FrameTwists {
+  RigidTransform<S> frame;  ///< world pose of the frame itself
+  Matrix3<S> R_parent;      ///< axes that t is measured in
+  Matrix3<S> J_w;           ///< right Jacobian at w
+
+  [[nodiscard]] Vector6<S> operator()(int k) const {
+    return k < 3 ? rotation_twist<S>(frame, J_w.col(k))
+                 : translation_twist<S>(R_parent, Vector3<S>::Unit(k - 3));
+  }
+};
+
+template <Scalar S>
+FrameTwists<S> frame_twists(const Model& model, const Mechanism<S>& mechanism,
+                            const Motion<S>& motion, const ParameterSet& set,
+                            const ParameterBlock& block, const VectorView<S>& p) {
+  Vector3<S> w = Vector3<S>::Zero();
+  for (int i = block.first; i < block.first + block.size; ++i) {
+    if (set[i].component < 3) {
+      w[set[i].component] = p[i];
+    }
+  }
+  const Matrix3<S> J_w = right_jacobian(w);
+  if (block.kind == ParameterKind::kJointTransform) {
+    const Node& node = model.tree().node(first_node_of_link(model, block.owner));
+    return {rest_frame(model, mechanism, motion, block.owner), motion.parent_of(node).R, J_w};
+  }
+  const NodeMotion<S>& joint = motion.at(model.node_of_link(block.owner));
+  return {
+      RigidTransform<S>{joint.R, joint.p} * mechanism.X_JB[static_cast<std::size_t>(block.owner)],
+      joint.R, J_w};
+}
+
+/// Wrenches ∂F/∂m and ∂F/∂(principal moments) of a link's body, world.
+template <Scalar S>
+struct InertiaWrenches {
+  Vector6<S> by_mass;
+  std::array<Vector6<S>, 3> by_moment;
+};
+
+template <Scalar S>
+InertiaWrenches<S> inertia_wrenches(const Model& model, const Mechanism<S>& mechanism,
+                                    const Motion<S>& motion, int link) {
+  const NodeMotion<S>& joint = motion.at(model.node_of_link(link));
+  const RigidTransform<S> body =
+      RigidTransform<S>{joint.R, joint.p} * mechanism.X_JB[static_cast<std::size_t>(link)];
+  const Vector3<S> w = joint.V.template head<3>();
+  const Vector3<S> u = joint.V.template tail<3>();
+  const Vector3<S> w_dot = joint.A.template head<3>();
+  const Vector3<S> velocity = u + w.cross(body.p);
+  // Acceleration of the centre of mass, gravity included.
+  const Vector3<S> acceleration =
+      joint.A.template tail<3>() + w_dot.cross(body.p) + w.cross(velocity);
+  InertiaWrenches<S> out;
+  out.by_mass = spatial<S>(body.p.cross(acceleration), acceleration);
+  for (int k = 0; k < 3; ++k) {
+    // Torque of a unit moment about body axis k: e (e·ω̇) + ω × e (e·ω).
+    const Vector3<S> e = body.R.col(k);
+    const Vector3<S> torque = e * e.dot(w_dot) + w.cross(e) * e.dot(w);
+    out.by_moment[static_cast<std::size_t>(k)] = spatial<S>(torque, Vector3<S>::Zero());
+  }
+  return out;
+}
+
+/// Visits the coordinates and controls of a motor: f(coordinate, control).
+template <typename F>
+void for_each_drive(const Model& model, int motor, const F& f) {
+  const CoordinateRange range =
+      model.coordinates_of_link(model.motors()[static_cast<std::size_t>(motor)].link);
+  for (int c = range.begin; c < range.end; ++c) {
+    f(c, model.first_control(motor) + c - range.begin);
+  }
+}
+
+}  // namespace
+
+template <Scalar S>
+void add_frame_gradient(const Model& model, const Mechanism<S>& mechanism, const Motion<S>& motion,
+                        const ParameterSet& set, const ParameterBlock& block,
+                        const VectorView<S>& p, const Vector6<S>& covector,
+                        Eigen::Ref<VectorX<S>> grad) {
+  const FrameTwists<S> twists = frame_twists<S>(model, mechanism, motion, set, block, p);
+  for (int i = block.first; i < block.first + block.size; ++i) {
+    grad[i] += covector.dot(twists(set[i].component));
+  }
+}
+
+template <Scalar S>
+void add_parameter_gradient(const Mechanism<S>& mechanism, const ParameterSet& set,
+                            const VectorView<S>& p, const StageResidual<S>& stage,
+                            const StagePoint<S>& point, const VectorView<S>& z, double factor,
+                            Eigen::Ref<VectorX<S>> grad) {
+  const Model& model = stage.model();
+  const Motion<S>& motion = stage.motion();
+  const Pullback<S>& pullback = stage.pullback();
+  const JointForces<S>& forces = stage.joint_forces();
+  const double scale = factor * point.c();
+  for (const ParameterBlock& block : set.blocks()) {
+    switch (block.kind) {
+      case ParameterKind::kJointTransform: {
+        const Vector6<S> G = scale * pullback.joint_frame(first_node_of_link(model, block.owner));
+        add_frame_gradient<S>(model, mechanism, motion, set, block, p, G, grad);
+        break;
+      }
+      case ParameterKind::kBodyTransform: {
+        const Vector6<S> G =
+            scale * pullback.body_frame(model, motion, stage.dynamics(), block.owner);
+        add_frame_gradient<S>(model, mechanism, motion, set, block, p, G, grad);
+        break;
+      }
+      case ParameterKind::kMass:
+      case ParameterKind::kInertia: {
+        const auto wrenches = inertia_wrenches<S>(model, mechanism, motion, block.owner);
+        const Vector6<S>& W = pullback.twist(model.node_of_link(block.owner));
+        for (int i = block.first; i < block.first + block.size; ++i) {
+          const auto k = static_cast<std::size_t>(set[i].component);
+          grad[i] += scale * W.dot(block.kind == ParameterKind::kMass ? wrenches.by_mass
+                                                                      : wrenches.by_moment[k]);
+        }
+        break;
+      }
+      case ParameterKind::kStiffness:
+      case ParameterKind::kDamping: {
+        const VectorX<S>& by =
+            block.kind == ParameterKind::kStiffness ? forces.by_stiffness : forces.by_damping;
+        const CoordinateRange range = model.coordinates_of_link(block.owner);
+        for (int c = range.begin; c < range.end; ++c) {
+          grad[block.first] -= scale * z[c] * by[c];
+        }
+        break;
+      }
+      case ParameterKind::kMotorP:
+      case ParameterKind::kMotorD: {
+        const VectorX<S>& by = block.kind == ParameterKind::kMotorP ? forces.by_P : forces.by_D;
+        for_each_drive(model, block.owner,
+                       [&](int c, int i) { grad[block.first] -= scale * z[c] * by[i]; });
+        break;
+      }
+      case ParameterKind::kGravity:
+        for (int i = block.first; i < block.first + block.size; ++i) {
+          grad[i] += scale * pullback.by_gravity()[set[i].component];
+        }
+        break;
+    }
+  }
+}
+
+std::vector<int> parameter_rows(const Model& model, const ParameterBlock& block) {
+  const Tree& tree = model.tree();
+  std::vector<int> rows;
+  const auto keep = [&](const auto& wanted) {
+    for (int l = 0; l < tree.dof(); ++l) {
+      if (wanted(tree.node_of(l))) {
+        rows.push_back(l);
+      }
+    }
+  };
+  switch (block.kind) {
+    case ParameterKind::kJointTransform: {
+      const int first = first_node_of_link(model, block.owner);
+      keep([&](int i) { return tree.is_on_path(i, first) || tree.is_on_path(first, i); });
+      break;
+    }
+    case ParameterKind::kBodyTransform:
+    case ParameterKind::kMass:
+    case ParameterKind::kInertia: {
+      const int node = model.node_of_link(block.owner);
+      keep([&](int i) { return tree.is_on_path(i, node); });
+      break;
+    }
+    case ParameterKind::kStiffness:
+    case ParameterKind::kDamping:
+      keep([&](int i) { return tree.node(i).link == block.owner; });
+      break;
+    case ParameterKind::kMotorP:
+    case ParameterKind::kMotorD: {
+      const int link = model.motors()[static_cast<std::size_t>(block.owner)].link;
+      keep([&](int i) { return tree.node(i).link == link; });
+      break;
+    }
+    case ParameterKind::kGravity:
+      keep([](int) { return true; });
+      break;
+  }
+  return rows;
+}
+
+namespace {
+
+/// Column of a joint transformation: everything from `first` on moves by D.
+template <Scalar S>
+void joint_frame_column(const StageResidual<S>& stage, int first, const Vector6<S>& D,
+                        const std::vector<int>& rows, Eigen::Ref<VectorX<S>> column) {
+  const Tree& tree = stage.model().tree();
+  const auto by_frame = frame_displacement<S>(stage.motion().parent_of(tree.node(first)), D);
+  const BodyDynamics<S>& below = stage.dynamics().below(first);
+  const Vector6<S> wrench =
+      below.I * by_frame.psi_ddot + below.B * by_frame.psi_dot + cross_wrench<S>(D, below.F);
+  for (const int l : rows) {
+    if (tree.node_of(l) >= first && tree.is_on_path(first, tree.node_of(l))) {
+      column[l] = stage.dynamics().IJ.col(l).dot(by_frame.psi_ddot) +
+                  stage.dynamics().BJ.col(l).dot(by_frame.psi_dot.template head<3>());
+    } else {
+      column[l] = stage.motion().J.col(l).dot(wrench);
+    }
+  }
+}
+
+/// Wrench by which a body changes F of everything above it, projected on a path.
+template <Scalar S>
+void path_column(const StageResidual<S>& stage, const Vector6<S>& wrench,
+                 const std::vector<int>& rows, Eigen::Ref<VectorX<S>> column) {
+  for (const int l : rows) {
+    column[l] = stage.motion().J.col(l).dot(wrench);
+  }
+}
+
+template <Scalar S>
+Vector6<S> body_frame_wrench(const StageResidual<S>& stage, int link, const Vector6<S>& D) {
+  const BodyDynamics<S>& body = stage.dynamics().of_link(link);
+  const auto by_frame =
+      frame_displacement<S>(stage.motion().at(stage.model().node_of_link(link)), D);
+  return body.I * by_frame.psi_ddot + body.B * by_frame.psi_dot + cross_wrench<S>(D, body.F);
+}
+
+}  // namespace
+
+template <Scalar S>
+void parameter_columns(const Mechanism<S>& mechanism, const ParameterSet& set,
+                       const VectorView<S>& p, const StageResidual<S>& stage,
+                       const StagePoint<S>& point, Eigen::Ref<MatrixX<S>> columns) {
+  const Model& model = stage.model();
+  const Motion<S>& motion = stage.motion();
+  const JointForces<S>& forces = stage.joint_forces();
+  for (const ParameterBlock& block : set.blocks()) {
+    const std::vector<int> rows = parameter_rows(model, block);
+    const auto each = [&](const auto& fill) {
+      for (int i = block.first; i < block.first + block.size; ++i) {
+        auto column = columns.col(i);
+        fill(set[i].component, column);
+        for (const int l : rows) {
+          column[l] *= point.c();
+        }
+      }
+    };
+    switch (block.kind) {
+      case ParameterKind::kJointTransform: {
+        const auto twists = frame_twists<S>(model, mechanism, motion, set, block, p);
+        const int first = first_node_of_link(model, block.owner);
+        each([&](int k, auto& column) {
+          joint_frame_column<S>(stage, first, twists(k), rows, column);
+        });
+        break;
+      }
+      case ParameterKind::kBodyTransform: {
+        const auto twists = frame_twists<S>(model, mechanism, motion, set, block, p);
+        each([&](int k, auto& column) {
+          path_column<S>(stage, body_frame_wrench<S>(stage, block.owner, twists(k)), rows, column);
+        });
+        break;
+      }
+      case ParameterKind::kMass:
+      case ParameterKind::kInertia: {
+        const auto wrenches = inertia_wrenches<S>(model, mechanism, motion, block.owner);
+        each([&](int k, auto& column) {
+          path_column<S>(stage,
+                         block.kind == ParameterKind::kMass
+                             ? wrenches.by_mass
+                             : wrenches.by_moment[static_cast<std::size_t>(k)],
+                         rows, column);
+        });
+        break;
+      }
+      case ParameterKind::kStiffness:
+      case ParameterKind::kDamping: {
+        const VectorX<S>& by =
+            block.kind == ParameterKind::kStiffness ? forces.by_stiffness : forces.by_damping;
+        each([&](int, auto& column) {
+          for (const int l : rows) {
+            column[l] = -by[l];
+          }
+        });
+        break;
+      }
+      case ParameterKind::kMotorP:
+      case ParameterKind::kMotorD: {
+        const VectorX<S>& by = block.kind == ParameterKind::kMotorP ? forces.by_P : forces.by_D;
+        each([&](int, auto& column) {
+          for_each_drive(model, block.owner, [&](int c, int i) { column[c] = -by[i]; });
+        });
+        break;
+      }
+      case ParameterKind::kGravity:
+        each([&](int k, auto& column) {
+          for (const int l : rows) {
+            column[l] = -stage.dynamics().IJ(3 + k, l);
+          }
+        });
+        break;
+    }
+  }
+}
+
+template void add_frame_gradient(const Model&, const Mechanism<double>&, const Motion<double>&,
+                                 const ParameterSet&, const ParameterBlock&,
+                                 const VectorView<double>&, const Vector6<double>&,
+                                 Eigen::Ref<VectorX<double>>);
+template void add_parameter_gradient(const Mechanism<double>&, const ParameterSet&,
+                                     const VectorView<double>&, const StageResidual<double>&,
+                                     const StagePoint<double>&, const VectorView<double>&, double,
+                                     Eigen::Ref<VectorX<double>>);
+template void parameter_columns(const Mechanism<double>&, const ParameterSet&,
+                                const VectorView<double>&, const StageResidual<double>&,
+                                const StagePoint<double>&, Eigen::Ref<MatrixX<double>>);
+
+}  // namespace hbar

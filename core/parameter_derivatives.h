@@ -1,0 +1,43 @@
+#pragma once
+
+#include "hbar/core/parameters.h"
+#include "hbar/core/stage_residual.h"
+
+namespace hbar {
+
+/// grad += Σ over the frame's parameters in a block of  covector · (world twist of each).
+///
+/// @param block     a joint or body transformation
+/// @param covector  of displacing the frame, world, at its origin                [6]
+/// @param p, grad   values of, and gradient by, the set's parameters             [set.size()]
+template <Scalar S>
+void add_frame_gradient(const Model& model, const Mechanism<S>& mechanism, const Motion<S>& motion,
+                        const ParameterSet& set, const ParameterBlock& block,
+                        const VectorView<S>& p, const Vector6<S>& covector,
+                        Eigen::Ref<VectorX<S>> grad);
+
+/// grad += factor · zᵀ ∂g/∂p of a stage, after stage.pull_back(z): O(1) per parameter block, the
+/// contraction of (21) without its matrix.
+///
+/// @param point  where the stage was linearised
+/// @param z      what was pulled back                                            [dof]
+template <Scalar S>
+void add_parameter_gradient(const Mechanism<S>& mechanism, const ParameterSet& set,
+                            const VectorView<S>& p, const StageResidual<S>& stage,
+                            const StagePoint<S>& point, const VectorView<S>& z, double factor,
+                            Eigen::Ref<VectorX<S>> grad);
+
+/// ∂g/∂p of a stage as explicit columns, after linearize: (23), (26), (27), (29). Rows that a
+/// parameter does not touch (parameter_rows) are left as they are.
+///
+/// @param columns                                                     [dof x set.size()]
+template <Scalar S>
+void parameter_columns(const Mechanism<S>& mechanism, const ParameterSet& set,
+                       const VectorView<S>& p, const StageResidual<S>& stage,
+                       const StagePoint<S>& point, Eigen::Ref<MatrixX<S>> columns);
+
+/// The rows of g that a block's parameters can touch, ascending: the coordinates on the path to the
+/// world, and for a joint transformation also those below it.
+[[nodiscard]] std::vector<int> parameter_rows(const Model& model, const ParameterBlock& block);
+
+}  // namespace hbar

@@ -1,0 +1,72 @@
+#include "hbar/core/stage_residual.h"
+
+namespace hbar {
+
+template <Scalar S>
+StagePoint<S>::StagePoint(const Model& model)
+    : q(VectorX<S>::Zero(model.dof())),
+      qdot(VectorX<S>::Zero(model.dof())),
+      a(VectorX<S>::Zero(model.dof())),
+      u(VectorX<S>::Zero(model.control_count())),
+      start{VectorX<S>::Zero(model.dof()), VectorX<S>::Zero(model.dof())} {}
+
+template <Scalar S>
+StageResidual<S>::StageResidual(const Model& model)
+    : model_(model),
+      motion_(model.tree()),
+      dynamics_(model),
+      columns_(model.tree()),
+      joint_forces_(model),
+      pullback_(model),
+      by_q_(VectorX<S>::Zero(model.dof())),
+      by_qdot_(VectorX<S>::Zero(model.dof())),
+      by_a_(VectorX<S>::Zero(model.dof())) {}
+
+template <Scalar S>
+void StageResidual<S>::residual(const Mechanism<S>& mechanism, const StagePoint<S>& point,
+                                Eigen::Ref<VectorX<S>> g) {
+  compute_motion<S>(model_.tree(), mechanism, point.q, point.qdot, point.a, motion_);
+  inverse_dynamics<S>(model_, mechanism, motion_, dynamics_, g);
+  compute_joint_forces<S>(model_, mechanism, point.q, point.qdot, point.u, point.start,
+                          joint_forces_);
+  g = point.c() * (g - joint_forces_.tau);
+}
+
+template <Scalar S>
+void StageResidual<S>::linearize(const Mechanism<S>& mechanism, const StagePoint<S>& point,
+                                 Eigen::Ref<VectorX<S>> g) {
+  c_ = point.c();
+  rate_ = point.rate;
+  compute_motion<S>(model_.tree(), mechanism, point.q, point.qdot, point.a, motion_);
+  subtree_dynamics<S>(model_, mechanism, motion_, dynamics_, g);
+  compute_joint_forces<S>(model_, mechanism, point.q, point.qdot, point.u, point.start,
+                          joint_forces_);
+  g = c_ * (g - joint_forces_.tau);
+}
+
+template <Scalar S>
+void StageResidual<S>::jacobian(const JacobianWeights<S>& weights, Eigen::Ref<MatrixX<S>> out) {
+  const JacobianWeights<S> scaled = {c_ * weights.q, c_ * weights.v, c_ * weights.a};
+  columns_.combine(model_.tree(), motion_, dynamics_, scaled, out);
+  out.diagonal() -= scaled.q * joint_forces_.by_q + scaled.v * joint_forces_.by_qdot;
+}
+
+template <Scalar S>
+void StageResidual<S>::newton_matrix(Eigen::Ref<MatrixX<S>> out) {
+  jacobian({S(1.0), S(rate_), S(rate_ * rate_)}, out);
+}
+
+template <Scalar S>
+void StageResidual<S>::pull_back(const VectorView<S>& z) {
+  pullback_.compute(model_, motion_, dynamics_, z);
+  by_q_ = c_ * (pullback_.by_q - z.cwiseProduct(joint_forces_.by_q));
+  by_qdot_ = c_ * (pullback_.by_qdot - z.cwiseProduct(joint_forces_.by_qdot));
+  by_a_ = c_ * pullback_.by_a;
+}
+
+template struct StagePoint<double>;
+template struct StagePoint<Dual>;
+template class StageResidual<double>;
+template class StageResidual<Dual>;
+
+}  // namespace hbar
