@@ -42,6 +42,11 @@ if(HBAR_ARCH)
   endif()
 endif()
 
+# Shared libraries find each other, and a program finds them, wherever they are installed.
+if(BUILD_SHARED_LIBS)
+  set(CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+endif()
+
 # The headers of every floor are reached as "hbar/FLOOR/file.h", through one include directory.
 set(HBAR_INCLUDE_DIR ${CMAKE_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${HBAR_INCLUDE_DIR}/hbar)
@@ -70,7 +75,8 @@ function(hbar_add_floor name)
   add_library(hbar_${name} ${ARGN})
   add_library(hbar::${name} ALIAS hbar_${name})
   set_target_properties(hbar_${name} PROPERTIES EXPORT_NAME ${name}
-                        POSITION_INDEPENDENT_CODE ON)
+                        POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION}
+                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_compile_features(hbar_${name} PUBLIC cxx_std_20)
   # One alignment on both sides of the interface, whatever -march each was built with.
   target_compile_definitions(hbar_${name} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
