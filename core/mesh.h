@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace hbar {
+
+/// A surface of triangles. Seen from outside, a triangle's corners run counter-clockwise.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices;      ///< length                             n of [3]
+  std::vector<std::array<int, 3>> triangles;  ///< indices of vertices, from 0        m of [3]
+};
+
+/// Refuses a surface that does not bound a solid.
+///
+/// @throws InvalidInput that says where, for: no triangle; a vertex that is not finite; an index
+/// out
+///         of range; a triangle without area; an edge with one triangle (a hole) or more than two;
+///         two neighbours of opposite orientation; a surface whose inside is outside
+void check_solid(const TriangleMesh& mesh);
+
+/// The same surface with vertices of equal coordinates made one.
+[[nodiscard]] TriangleMesh merge_equal_vertices(const TriangleMesh& mesh);
+
+/// Whether every edge belongs to exactly two triangles.
+[[nodiscard]] bool is_closed(const TriangleMesh& mesh);
+
+/// Moments of a homogeneous solid of density 1.
+struct SolidMoments {
+  double volume = 0.0;                               ///< length³
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of mass, length                     [3]
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre, density·length⁵ [3 x 3]
+};
+
+/// Exact moments of the solid a surface bounds: the sum, over its triangles, of those of the
+/// tetrahedra they span with one point of the surface.
+///
+/// @param mesh  closed and oriented, as check_solid wants it
+/// @throws InvalidInput if there is no triangle or the volume is not positive
+[[nodiscard]] SolidMoments solid_moments(const TriangleMesh& mesh);
+
+}  // namespace hbar

@@ -1,0 +1,185 @@
+#include "hbar/scene/read_xml.h"
+
+#include <tinyxml2.h>
+
+#include <utility>
+
+#include "hbar/core/nearest_name.h"
+#include "hbar/scene/numbers.h"
+#include "hbar/scene/read_elements.h"
+#include "hbar/scene/text_file.h"
+#include "hbar/scene/xml_document.h"
+
+namespace hbar::scene {
+namespace {
+
+/// Throws unless an element may stand in its parent.
+void check_placement(const tinyxml2::XMLElement& xml, std::string_view parent,
+                     const ReadContext& context) {
+  const std::string place = element_place(context, xml.GetLineNum(), xml.Name());
+  const ElementInfo* const element = find_element(xml.Name());
+  const std::vector<std::string> allowed = children_of(parent);
+  if (element == nullptr) {
+    const std::string hint = allowed.empty() ? concat("<", parent, "> has no elements in it")
+                                             : unknown_name_hint(xml.Name(), allowed);
+    throw InvalidInput(place + concat("unknown element in <", parent, ">; ") + hint);
+  }
+  if (!is_listed(element->parents, '|', parent)) {
+    std::string where;
+    for (const std::string& one : listed(element->parents, '|')) {
+      where += (where.empty() ? "<" : " or <") + one + ">";
+    }
+    throw InvalidInput(place + concat("cannot stand in <", parent, ">; it belongs in ",
+                                      where.empty() ? "no other element" : where));
+  }
+}
+
+/// One reader per container: what its children are and where they go.
+class SceneReader {
+ public:
+  SceneReader(ReadContext& context, Description& description)
+      : context_(context), description_(description) {}
+
+  void read_root(const tinyxml2::XMLElement& root) {
+    description_.model = XmlElement(root, context_).text("model");
+    const auto children = checked_children(root, context_);
+    for (const tinyxml2::XMLElement* child : children) {
+      if (std::string_view(child->Name()) == "default") read_defaults(*child, context_);
+    }
+    for (const tinyxml2::XMLElement* child : children) read_section(*child);
+    announce();
+  }
+
+ private:
+  void read_section(const tinyxml2::XMLElement& xml) {
+    const XmlElement element(xml, context_);
+    const std::string_view name = element.name();
+    if (name == "option") {
+      description_.options = read_options(element);
+    } else if (name == "solver_option") {
+      description_.solver_options = read_solver_options(element);
+    } else if (name == "ground") {
+      description_.ground = read_ground(element);
+    } else if (name == "robot") {
+      description_.robots.push_back(read_robot(xml, context_));
+    } else if (name != "default") {
+      read_list(xml, name);
+    }
+  }
+
+  void read_list(const tinyxml2::XMLElement& xml, std::string_view section) {
+    for (const tinyxml2::XMLElement* child : checked_children(xml, context_)) {
+      const XmlElement element(*child, context_);
+      if (section == "actuator") {
+        description_.motors.push_back(read_motor(element));
+      } else if (section == "contact") {
+        description_.contacts.push_back(read_contact(element));
+        notice_ground_damping(element, description_.contacts.back());
+      } else if (section == "variable") {
+        description_.end_effectors.push_back(read_end_effector(element));
+      } else if (section == "sensor") {
+        description_.tactile_sensors.push_back(read_tactile(element));
+      } else {
+        description_.virtual_shapes.push_back(read_virtual_shape(element));
+      }
+    }
+  }
+
+  void notice_ground_damping(const XmlElement& element, const Contact& contact) {
+    const bool silent = contact.kind == ContactKind::kGround && contact.damping > 0.0 &&
+                        !element.has("law") && !std::exchange(damping_noticed_, true);
+    if (!silent) return;
+    context_.notice(element.line(),
+                    "<ground_contact>: damping without law is multiplied by the depth; "
+                    "law=\"linear\" is what earlier readers of this format do");
+  }
+
+  /// Says once per kind what is kept and not simulated.
+  void announce() {
+    const std::string end = " read and kept, but not simulated yet";
+    if (description_.ground) {
+      context_.notice(description_.ground->line.number, "<ground>: the ground is" + end);
+    }
+    if (!description_.contacts.empty()) {
+      context_.notice(description_.contacts.front().line.number,
+                      concat("<contact>: contact (", description_.contacts.size(), ") is", end));
+    }
+    if (!description_.tactile_sensors.empty()) {
+      context_.notice(
+          description_.tactile_sensors.front().line.number,
+          concat("<sensor>: tactile sensing (", description_.tactile_sensors.size(), ") is", end));
+    }
+  }
+
+  ReadContext& context_;
+  Description& description_;
+  bool damping_noticed_ = false;
+};
+
+}  // namespace
+
+std::vector<const tinyxml2::XMLElement*> checked_children(const tinyxml2::XMLElement& parent,
+                                                          ReadContext& context) {
+  const std::string_view name = parent.Name();
+  std::vector<const tinyxml2::XMLElement*> children;
+  std::map<std::string, int, std::less<>> first_lines;
+  for (const tinyxml2::XMLNode* node = parent.FirstChild(); node; node = node->NextSibling()) {
+    if (node->ToText() != nullptr) {
+      context.notice(node->GetLineNum(), concat("<", name, ">: the text \"",
+                                                quotable(node->Value()), "\" has no effect"));
+    }
+    const tinyxml2::XMLElement* const child = node->ToElement();
+    if (child == nullptr) continue;
+    check_placement(*child, name, context);
+    const auto [first, is_new] = first_lines.emplace(child->Name(), child->GetLineNum());
+    if (!is_new && find_element(child->Name())->single && name != "default") {
+      throw InvalidInput(element_place(context, child->GetLineNum(), child->Name()) +
+                         concat("a second one in this <", name, ">, the first is in line ",
+                                first->second, "; at most one is allowed"));
+    }
+    children.push_back(child);
+  }
+  return children;
+}
+
+void read_defaults(const tinyxml2::XMLElement& block, ReadContext& context) {
+  const XmlElement checked(block, context);
+  for (const tinyxml2::XMLElement* child : checked_children(block, context)) {
+    const XmlElement element(*child, context);
+    if (const auto inner = checked_children(*child, context); !inner.empty()) {
+      XmlElement(*inner.front(), context).fail("cannot be a default; only attributes can");
+    }
+    for (const auto* a = child->FirstAttribute(); a != nullptr; a = a->Next()) {
+      element.check_any_type(a->Name());
+      context.defaults[std::string(element.name())][a->Name()] = {a->Value(), a->GetLineNum(),
+                                                                  true};
+    }
+  }
+}
+
+Scene read_scene_text(std::string_view text, const std::string& name,
+                      const std::filesystem::path& folder) {
+  ReadContext context{name, {}, {}};
+  tinyxml2::XMLDocument document;
+  const tinyxml2::XMLElement& root = parse_document(text, name, document);
+  Scene scene;
+  scene.file = name;
+  scene.folder = folder;
+  SceneReader(context, scene.description).read_root(root);
+  std::size_t links = 0;
+  for (const Robot& robot : scene.description.robots) links += robot.links.size();
+  if (links == 0) {
+    throw InvalidInput(element_place(context, root.GetLineNum(), "redmax") +
+                       "the scene has no link; <robot> holds at least one <link>");
+  }
+  check_references(scene.description, context);
+  scene.notices = std::move(context.notices);
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  return read_scene_text(read_text_file(path), path.filename().string(), folder);
+}
+
+}  // namespace hbar::scene
