@@ -1,0 +1,47 @@
+#pragma once
+
+#include "hbar/adjoint/trajectory.h"
+#include "hbar/core/stage_residual.h"
+
+namespace hbar {
+
+/// How a stage's rates and step start depend on earlier stages, through changes of chart.
+///
+/// Along an edge (stage ← earlier) coordinates pass unchanged, but for the exponential nodes whose
+/// chart changed in between: their r passes as φ(r) and their rate as Dφ(r) ṙ.
+class History {
+ public:
+  explicit History(const Model& model) : model_(model) {}
+
+  /// Nodes whose chart differs between two stages, i.e. that switched an odd number of times.
+  void switched_nodes(const Trajectory& trajectory, int earlier, int stage,
+                      std::vector<int>& nodes) const;
+
+  /// The parts of q̇ and q̈ that the past fixes, and the state at the step's start.
+  ///
+  /// @param qdot_past  Σ weight q_j                                              [dof]
+  /// @param a_past     Σ weight q̇_j                                              [dof]
+  void gather(const Trajectory& trajectory, int stage, Eigen::VectorXd& qdot_past,
+              Eigen::VectorXd& a_past, StepStart<double>& start) const;
+
+  /// q̇ and q̈ of a point whose q is set: q̇ = rate q + qdot_past, q̈ = rate q̇ + a_past.
+  static void set_rates(const Eigen::VectorXd& qdot_past, const Eigen::VectorXd& a_past,
+                        StagePoint<double>& point) {
+    point.qdot = point.rate * point.q + qdot_past;
+    point.a = point.rate * point.qdot + a_past;
+  }
+
+  /// Transpose of gather: weights on its three results become weights on earlier states.
+  ///
+  /// @param y_qdot, y_a       weights on qdot_past, a_past                       [dof]
+  /// @param y_start           weights on the step's start
+  /// @param q_bar, qdot_bar   weights per stage, added to             [dof x stages]
+  void scatter(const Trajectory& trajectory, int stage, const Eigen::VectorXd& y_qdot,
+               const Eigen::VectorXd& y_a, const StepStart<double>& y_start, Eigen::MatrixXd& q_bar,
+               Eigen::MatrixXd& qdot_bar) const;
+
+ private:
+  const Model& model_;
+};
+
+}  // namespace hbar
