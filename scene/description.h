@@ -24,7 +24,10 @@ struct SourceLine {
   friend bool operator==(const SourceLine&, const SourceLine&) { return true; }
 };
 
+/// Integrators a scene may name.
 enum class Integrator { kBdf1, kBdf2, kSdirk2 };
+
+/// Units of a scene's numbers: centimetre and gram, or metre and kilogram; seconds in both.
 enum class UnitSystem { kCmG, kMKg };
 
 /// `<option>`.
@@ -74,6 +77,7 @@ enum class JointType {
   return kCounts[static_cast<std::size_t>(type)];
 }
 
+/// What a joint's placement refers to: the parent's joint frame, or the world at rest.
 enum class Frame { kLocal, kWorld };
 
 /// `<joint>`.
@@ -123,6 +127,8 @@ struct CapsuleBody {
   friend bool operator==(const CapsuleBody&, const CapsuleBody&) = default;
 };
 
+/// What a mesh's placement places: its principal frame or its file's, in the joint frame or the
+/// world.
 enum class MeshTransform { kBodyToJoint, kObjToJoint, kObjToWorld };
 
 /// A homogeneous solid bounded by the triangles of an OBJ file.
@@ -196,6 +202,7 @@ struct Robot {
   friend bool operator==(const Robot&, const Robot&) = default;
 };
 
+/// What a motor's control is: a force, or a position to reach.
 enum class Control { kForce, kPosition };
 
 /// `<motor>`: one control per coordinate of its joint.
@@ -210,8 +217,13 @@ struct Motor {
   friend bool operator==(const Motor&, const Motor&) = default;
 };
 
+/// Which two shapes touch.
 enum class ContactKind { kGround, kGeneralPrimitive, kCuboidCuboid };
+
+/// How the normal force follows from the depth.
 enum class ContactLaw { kDocument, kLinear };
+
+/// Where the other body is pushed: at the contact point, or at its own surface.
 enum class Reaction { kPoint, kSurface };
 
 /// `<ground_contact>`, `<general_primitive_contact>`, `<cuboid_cuboid_contact>`.
@@ -286,6 +298,8 @@ struct VirtualCuboid {
   Quat quat = {1.0, 0.0, 0.0, 0.0};  ///<                     [4]
   friend bool operator==(const VirtualCuboid&, const VirtualCuboid&) = default;
 };
+
+/// A shape that is drawn and touches nothing.
 struct VirtualShape {
   std::optional<std::string> name;
   std::variant<VirtualSphere, VirtualCuboid> shape;

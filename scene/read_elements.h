@@ -16,10 +16,12 @@ namespace hbar::scene {
 /// Remembers the attributes of the elements in a `<default>` block, having checked their texts.
 void read_defaults(const tinyxml2::XMLElement& block, ReadContext& context);
 
+/// A link's parts, and a robot with all its links.
 [[nodiscard]] Joint read_joint(XmlElement element);
 [[nodiscard]] Body read_body(XmlElement element);
 [[nodiscard]] Robot read_robot(const tinyxml2::XMLElement& robot, ReadContext& context);
 
+/// The other sections of a scene, each from its own element.
 [[nodiscard]] Options read_options(const XmlElement& element);
 [[nodiscard]] SolverOptions read_solver_options(const XmlElement& element);
 [[nodiscard]] Ground read_ground(const XmlElement& element);

@@ -296,6 +296,7 @@ IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {
   const ExclusiveRun run;
   // Ipopt counts references itself; without a console it prints nothing, whatever happens.
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> application(
+      // NOLINTNEXTLINE(hbar-naked-new): SmartPtr owns it
       new Ipopt::IpoptApplication(options.print_level > 0));
   set_ipopt_options(*application, options);
   // The empty name stands for "read no file of options".
@@ -304,6 +305,7 @@ IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {
   if (status != Ipopt::Solve_Succeeded) {
     throw InvalidInput(concat("ipopt: Ipopt refused its options (", static_cast<int>(status), ")"));
   }
+  // NOLINTNEXTLINE(hbar-naked-new): SmartPtr owns it
   const Ipopt::SmartPtr<Adapter> adapter(new Adapter(nlp, options));
   status = application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(adapter)));
   if (adapter->exception() != nullptr) std::rethrow_exception(adapter->exception());

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The library does not print, exit, allocate by hand, draw unseeded numbers or keep dead code.
 
-A line that must break a rule says so and why: `// NOLINT(hbar-RULE): reason`.
+A line that must break a rule says so and why: `// NOLINT(hbar-RULE): reason`,
+or the line before it does with NOLINTNEXTLINE.
 """
 
 import re
@@ -26,8 +27,11 @@ LOOKS_LIKE_CODE = re.compile(r"\w\(.*\)|[\w\])] ?[-+*/]?= ?\S|->|::|^[{}]|"
                              r"^(return|else|break|continue)\b|^(if|for|while|switch) ?\(")
 
 
-def allowed(line, rule):
-    return re.search(rf"NOLINT\(hbar-{rule}\): \S", line)
+def allowed(lines, number, rule):
+    """Whether line number, or the one before it, allows the rule to be broken there."""
+    before = lines[number - 2] if number > 1 else ""
+    return (re.search(rf"NOLINT\(hbar-{rule}\): \S", lines[number - 1]) or
+            re.search(rf"NOLINTNEXTLINE\(hbar-{rule}\): \S", before))
 
 
 def in_code(text, rules):
@@ -36,7 +40,7 @@ def in_code(text, rules):
         if re.match(r"\s*#\s*include\b", line):
             continue
         for rule, pattern in rules.items():
-            if re.search(pattern, line) and not allowed(original[number - 1], rule):
+            if re.search(pattern, line) and not allowed(original, number, rule):
                 yield number, rule, original[number - 1].strip()
 
 

@@ -37,6 +37,10 @@ void allocates() {
   // planted: naked-new
   void* b = malloc(4);
   int* c = new int(1);  // NOLINT(hbar-naked-new): owned by a foreign smart pointer
+  // NOLINTNEXTLINE(hbar-naked-new): so is this
+  int* d = new int(1);
+  // planted: naked-new
+  int* e = new int(1);  // NOLINT(hbar-naked-new)
 }
 
 struct Pinned {
