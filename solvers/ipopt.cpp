@@ -9,6 +9,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "hbar/solvers/ipopt_options.h"
 
@@ -281,6 +282,12 @@ IpoptStatus translate(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
+/// An object that counts its references, as Ipopt wants them.
+template <typename T, typename... Args>
+Ipopt::SmartPtr<T> make_counted(Args&&... args) {
+  return new T(std::forward<Args>(args)...);  // NOLINT(hbar-naked-new): the SmartPtr owns it
+}
+
 }  // namespace
 
 IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {
@@ -294,10 +301,8 @@ IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {
                               "; expected a positive number"));
   }
   const ExclusiveRun run;
-  // Ipopt counts references itself; without a console it prints nothing, whatever happens.
-  const Ipopt::SmartPtr<Ipopt::IpoptApplication> application(
-      // NOLINTNEXTLINE(hbar-naked-new): SmartPtr owns it
-      new Ipopt::IpoptApplication(options.print_level > 0));
+  // Without a console Ipopt prints nothing, whatever happens.
+  const auto application = make_counted<Ipopt::IpoptApplication>(options.print_level > 0);
   set_ipopt_options(*application, options);
   // The empty name stands for "read no file of options".
   const std::string no_file;
@@ -305,8 +310,7 @@ IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {
   if (status != Ipopt::Solve_Succeeded) {
     throw InvalidInput(concat("ipopt: Ipopt refused its options (", static_cast<int>(status), ")"));
   }
-  // NOLINTNEXTLINE(hbar-naked-new): SmartPtr owns it
-  const Ipopt::SmartPtr<Adapter> adapter(new Adapter(nlp, options));
+  const auto adapter = make_counted<Adapter>(nlp, options);
   status = application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(adapter)));
   if (adapter->exception() != nullptr) std::rethrow_exception(adapter->exception());
   return adapter->take_result(translate(status), nlp);

@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+
+#include "hbar/solvers/ipopt.h"
+#include "tests/solvers/programs.h"
+#include "tests/solvers/random_matrices.h"
+
+namespace hbar::solvers {
+namespace {
+
+std::string refusal(const IpoptOptions& options) {
+  testing::Rosenbrock program;
+  ::testing::internal::CaptureStdout();
+  std::string message =
+      testing::message_of<InvalidInput>([&] { (void)solve_with_ipopt(program, options); });
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+  return message;
+}
+
+TEST(IpoptOptions, RefusesUnknownNamesAndSuggestsTheNearest) {
+  IpoptOptions options;
+  options.number_options["mu_initt"] = 0.1;
+  EXPECT_EQ(refusal(options), "ipopt: unknown option \"mu_initt\"; did you mean \"mu_init\"?");
+}
+
+TEST(IpoptOptions, RefusesAnotherType) {
+  IpoptOptions options;
+  options.number_options["max_iter"] = 3.0;
+  EXPECT_EQ(refusal(options),
+            "ipopt: option \"max_iter\" belongs into integer_options, not into number_options");
+}
+
+TEST(IpoptOptions, RefusesValuesThatIpoptDoesNotAllow) {
+  IpoptOptions options;
+  options.tolerance = -1.0;
+  EXPECT_EQ(refusal(options).find("ipopt: option \"tol\" cannot be -1 ("), 0U);
+  options = {};
+  options.string_options["mu_strategy"] = "clever";
+  EXPECT_EQ(refusal(options).find("ipopt: option \"mu_strategy\" cannot be clever ("), 0U);
+  options = {};
+  options.max_iterations = -1;
+  EXPECT_EQ(refusal(options).find("ipopt: option \"max_iter\" cannot be -1 ("), 0U);
+  options = {};
+  options.max_wall_time = 0.0;
+  EXPECT_EQ(refusal(options), "ipopt: max_wall_time is 0; expected a positive number of seconds");
+  options = {};
+  options.constraint_tolerance = 0.0;
+  EXPECT_EQ(refusal(options), "ipopt: constraint_tolerance is 0; expected a positive number");
+}
+
+TEST(IpoptOptions, RefusesNamesThatOurOptionsDecide) {
+  IpoptOptions options;
+  options.string_options["hessian_approximation"] = "exact";
+  EXPECT_EQ(refusal(options),
+            "ipopt: option \"hessian_approximation\" is decided by IpoptOptions::hessian");
+}
+
+TEST(IpoptOptions, PassesOptionsOnAndLetsThemWin) {
+  testing::Rosenbrock program;
+  IpoptOptions options;
+  options.integer_options["max_iter"] = 2;
+  options.string_options["mu_strategy"] = "adaptive";
+  options.number_options["obj_scaling_factor"] = 0.5;
+  EXPECT_EQ(solve_with_ipopt(program, options).iterations, 2);
+}
+
+}  // namespace
+}  // namespace hbar::solvers
