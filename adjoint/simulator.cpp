@@ -74,6 +74,7 @@ struct Simulator::Workspace {
         system(model, mechanism),
         newton(model.dof()),
         x(model.dof()),
+        last_a(model.dof()),
         motion(model.tree()),
         end_effectors(model) {}
 
@@ -82,6 +83,7 @@ struct Simulator::Workspace {
   StageSystem system;
   solvers::Newton newton;
   Eigen::VectorXd x;
+  Eigen::VectorXd last_a;  // of the stage that was solved last
   Motion<double> motion;
   EndEffectors<double> end_effectors;
 };
@@ -159,7 +161,7 @@ bool Simulator::solve_stage(Trajectory& trajectory, int stage, RolloutReport& re
   const bool has_last = stage > 1;
   work_->x = -system.a_past / row.rate - system.qdot_past;
   if (has_last) {
-    work_->x += point.a / row.rate;
+    work_->x += work_->last_a / row.rate;
   }
   work_->x /= row.rate;
   const solvers::NewtonReport newton = work_->newton.solve(system, options_.newton, work_->x);
@@ -169,6 +171,7 @@ bool Simulator::solve_stage(Trajectory& trajectory, int stage, RolloutReport& re
   }
   point.q = work_->x;
   History::set_rates(system.qdot_past, system.a_past, point);
+  work_->last_a = point.a;
   trajectory.q.col(stage) = point.q;
   trajectory.qdot.col(stage) = point.qdot;
   trajectory.newton[static_cast<std::size_t>(stage)] = newton;

@@ -1,0 +1,39 @@
+#include "hbar/adjoint/objective.h"
+
+#include "hbar/core/error.h"
+
+namespace hbar {
+
+TrajectoryPartials::TrajectoryPartials(const TrajectoryValues& shape)
+    : q(Eigen::MatrixXd::Zero(shape.q.rows(), shape.q.cols())),
+      qdot(Eigen::MatrixXd::Zero(shape.qdot.rows(), shape.qdot.cols())),
+      v(Eigen::MatrixXd::Zero(shape.v.rows(), shape.v.cols())),
+      u(Eigen::MatrixXd::Zero(shape.u.rows(), shape.u.cols())),
+      p(Eigen::VectorXd::Zero(shape.p.size())) {}
+
+double Objective::value(const TrajectoryValues& values) const {
+  double sum = 0.0;
+  for (const auto& term : terms_) {
+    const double value = term->value(values);
+    if (!std::isfinite(value)) {
+      throw NumericalFailure(concat("objective term '", term->name(), "' is ", value));
+    }
+    sum += value;
+  }
+  return sum;
+}
+
+TrajectoryPartials Objective::partials(const TrajectoryValues& values) const {
+  TrajectoryPartials sum(values);
+  for (const auto& term : terms_) {
+    term->add_partials(values, sum);
+    if (!sum.q.allFinite() || !sum.qdot.allFinite() || !sum.v.allFinite() || !sum.u.allFinite() ||
+        !sum.p.allFinite()) {
+      throw NumericalFailure(
+          concat("objective term '", term->name(), "' gave a partial that is not finite"));
+    }
+  }
+  return sum;
+}
+
+}  // namespace hbar
