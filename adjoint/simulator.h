@@ -22,6 +22,7 @@ struct SimulationOptions {
   const std::atomic<bool>* stop = nullptr;  ///< checked before each step
 };
 
+/// How a simulation ended.
 enum class RolloutStatus { kConverged, kInterrupted, kStepFailed };
 
 /// What a simulation did, in words and numbers.

@@ -11,8 +11,8 @@ target_compile_options(hbar_flags INTERFACE
   -Woverloaded-virtual -Wnull-dereference
   $<$<BOOL:${HBAR_WARNINGS_AS_ERRORS}>:-Werror>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # GCC 12 reports false positives of these inside Eigen at -O2 and above.
-  target_compile_options(hbar_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds
+  # GCC 12 reports false positives of these inside Eigen and std::string at -O2 and above.
+  target_compile_options(hbar_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized -Wno-array-bounds
                          -Wno-null-dereference -Wno-stringop-overflow)
 endif()
 if(HBAR_SANITIZE)

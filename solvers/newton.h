@@ -30,6 +30,7 @@ struct NewtonOptions {
   int max_ls = 20;      ///< shortenings of one correction
 };
 
+/// Why Newton's method stopped.
 enum class NewtonStatus {
   kConverged,       ///< ‖g‖₂ ≤ tol and the next correction ≤ rtol
   kRounding,        ///< converged as far as rounding lets it: corrections ceased to shrink
