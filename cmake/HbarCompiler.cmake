@@ -12,8 +12,8 @@ target_compile_options(hbar_flags INTERFACE
   $<$<BOOL:${HBAR_WARNINGS_AS_ERRORS}>:-Werror>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports false positives of these inside Eigen and std::string at -O2 and above.
-  target_compile_options(hbar_flags INTERFACE -Wno-restrict -Wno-maybe-uninitialized -Wno-array-bounds
-                         -Wno-null-dereference -Wno-stringop-overflow)
+  target_compile_options(hbar_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds
+                         -Wno-null-dereference -Wno-stringop-overflow -Wno-restrict)
 endif()
 if(HBAR_SANITIZE)
   add_compile_options(-fsanitize=${HBAR_SANITIZE} -fno-omit-frame-pointer
