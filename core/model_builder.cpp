@@ -1,5 +1,6 @@
 #include "hbar/core/model_builder.h"
 
+#include <limits>
 #include <utility>
 
 #include "hbar/core/error.h"
@@ -8,6 +9,7 @@ namespace hbar {
 namespace {
 
 constexpr double kOrthonormal = 1e-9;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool is_pose(const RigidTransform<double>& X) {
   return X.p.allFinite() && X.R.allFinite() &&
@@ -117,15 +119,17 @@ int ModelBuilder::add_link(int parent, Joint joint, Body body, std::string name,
   if (parent != -1) {
     check_link_index(parent, concat("link '", name, "', parent"));
   }
-  for (const Link& other : model_.links_) {
-    require(other.name != name, concat("link '", name, "': this name is taken"));
-    require(other.joint.name != joint.name, concat("joint '", joint.name, "': this name is taken"));
-    require(other.body.name != body.name, concat("body '", body.name, "': this name is taken"));
-  }
+  require(!link_names_.contains(name), concat("link '", name, "': this name is taken"));
+  require(!joint_names_.contains(joint.name),
+          concat("joint '", joint.name, "': this name is taken"));
+  require(!body_names_.contains(body.name), concat("body '", body.name, "': this name is taken"));
   require(design_mask <= kMaskAll, concat("link '", name, "': design mask is ", design_mask,
                                           "; it must be a sum of 1, 2, 4, 8, 16, 32"));
   check_joint(joint);
   check_body(body);
+  link_names_.insert(name);
+  joint_names_.insert(joint.name);
+  body_names_.insert(body.name);
   const int index = model_.link_count();
   const int parent_node = parent == -1 ? -1 : model_.node_of_link(parent);
   model_.node_of_link_.push_back(model_.tree_.add_joint(joint.kind, parent_node, index));
@@ -145,7 +149,8 @@ int ModelBuilder::add_motor(const Motor& motor) {
   }
   require(motor.lower <= motor.upper, concat(where, ": range is [", motor.lower, ", ", motor.upper,
                                              "]; the lower must not exceed the upper"));
-  require(std::isfinite(motor.lower) == std::isfinite(motor.upper),
+  const bool limited = std::isfinite(motor.lower) && std::isfinite(motor.upper);
+  require(limited || (motor.lower == -kInfinity && motor.upper == kInfinity),
           where + ": a range must have both ends or none");
   require(std::isfinite(motor.P) && motor.P >= 0.0 && std::isfinite(motor.D) && motor.D >= 0.0,
           concat(where, ": P is ", motor.P, " and D is ", motor.D, "; both must be ≥ 0"));
@@ -169,8 +174,11 @@ int ModelBuilder::add_end_effector(EndEffector end_effector) {
 
 RigidTransform<double> ModelBuilder::rest_pose(int link) const {
   check_link_index(link, "rest_pose");
-  const Link& l = model_.link(link);
-  return l.parent == -1 ? l.joint.X_PJ : rest_pose(l.parent) * l.joint.X_PJ;
+  RigidTransform<double> X_J;
+  for (int l = link; l != -1; l = model_.link(l).parent) {
+    X_J = model_.link(l).joint.X_PJ * X_J;
+  }
+  return X_J;
 }
 
 Model ModelBuilder::build() const {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <unordered_set>
+
 #include "hbar/core/model.h"
 
 namespace hbar {
@@ -45,6 +48,9 @@ class ModelBuilder {
   void check_link_index(int link, std::string_view what) const;
 
   Model model_;
+  std::unordered_set<std::string> link_names_;
+  std::unordered_set<std::string> joint_names_;
+  std::unordered_set<std::string> body_names_;
 };
 
 /// A homogeneous solid body.

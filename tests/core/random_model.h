@@ -1,0 +1,161 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "hbar/core/error.h"
+#include "hbar/core/model_builder.h"
+#include "hbar/core/stage_residual.h"
+#include "tests/support/duals.h"
+#include "tests/support/random.h"
+
+namespace hbar::testing {
+
+[[nodiscard]] inline RigidTransform<double> random_pose(Random& random) {
+  return {random.rotation(), random.vector3()};
+}
+
+/// One joint of every kind, with random axes.
+[[nodiscard]] inline std::vector<JointKind> every_joint(Random& random) {
+  return {FixedJoint{},
+          RevoluteJoint{random.direction()},
+          PrismaticJoint{random.direction()},
+          PlanarJoint{random.direction(), random.direction()},
+          TranslationalJoint{},
+          Free2dJoint{},
+          SphericalEulerJoint{},
+          SphericalExpJoint{},
+          Free3dEulerJoint{},
+          Free3dExpJoint{},
+          UniversalJoint{random.direction(), random.direction()}};
+}
+
+[[nodiscard]] inline Body random_body(Random& random) {
+  const Eigen::Vector3d spread(random.between(0.05, 0.3), random.between(0.05, 0.3),
+                               random.between(0.05, 0.3));
+  Body body;
+  body.X_JB = random_pose(random);
+  body.mass = random.between(0.5, 2.0);
+  body.inertia = Eigen::Vector3d::Constant(spread.sum()) - spread;
+  return body;
+}
+
+/// Two branching trees of every kind of joint and a second exponential, revolute and fixed one, in
+/// an order that the seed shuffles; springs, dampers and limits; a motor of every kind; four end
+/// effectors; a mask of its own on each link. Subtrees are not contiguous in coordinates.
+[[nodiscard]] inline Model random_model(unsigned seed) {
+  constexpr std::array<int, 14> kParents = {-1, 0, 1, 1, 3, 2, 0, 6, -1, 8, 7, 4, 9, 5};
+  Random random(seed);
+  std::vector<JointKind> kinds = every_joint(random);
+  kinds.push_back(SphericalExpJoint{});
+  kinds.push_back(RevoluteJoint{random.direction()});
+  kinds.push_back(FixedJoint{});
+  std::shuffle(kinds.begin(), kinds.end(), random.engine());
+  ModelBuilder builder("random");
+  builder.set_gravity(random.vector3(9.0));
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    Joint joint;
+    joint.name = concat("j", i);
+    joint.kind = kinds[i];
+    joint.X_PJ = random_pose(random);
+    joint.damping = random.between(0.1, 1.0);
+    joint.stiffness = random.between(0.1, 2.0);
+    joint.rest = random.vector(joint_dof(kinds[i]));
+    if (i % 2 == 0) {
+      joint.limits = JointLimits{-0.5, 0.6, random.between(1.0, 5.0)};
+    }
+    Body body = random_body(random);
+    body.name = concat("b", i);
+    builder.add_link(kParents[i], joint, body, concat("l", i), static_cast<unsigned>(i * 5) % 64U);
+  }
+  int motors = 0;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (joint_dof(kinds[i]) == 0 || i % 5 == 4) {
+      continue;
+    }
+    Motor motor;
+    motor.link = static_cast<int>(i);
+    motor.kind = motors % 2 == 0 ? Motor::Kind::kPosition : Motor::Kind::kForce;
+    motor.implicit = motors % 4 == 0;
+    motor.P = random.between(1.0, 3.0);
+    motor.D = random.between(0.1, 0.5);
+    if (motors % 3 != 0) {
+      motor.lower = -2.5;
+      motor.upper = 3.0;
+    }
+    builder.add_motor(motor);
+    ++motors;
+  }
+  for (const int link : {13, 11, 3, 12}) {
+    builder.add_end_effector({.name = "", .link = link, .position = random.vector3()});
+  }
+  return builder.build();
+}
+
+/// A state and accelerations, all entries of order one.
+struct State {
+  Eigen::VectorXd q;     ///< [dof]
+  Eigen::VectorXd qdot;  ///< [dof]
+  Eigen::VectorXd a;     ///< [dof]
+};
+
+[[nodiscard]] inline State random_state(const Model& model, Random& random) {
+  return {random.vector(model.dof(), 1.5), random.vector(model.dof(), 2.0),
+          random.vector(model.dof(), 3.0)};
+}
+
+/// A point of a step of 0.05 at which nothing is zero.
+[[nodiscard]] inline StagePoint<double> random_point(const Model& model, Random& random) {
+  const State state = random_state(model, random);
+  StagePoint<double> point(model);
+  point.q = state.q;
+  point.qdot = state.qdot;
+  point.a = state.a;
+  point.u = random.vector(model.control_count(), 1.2);
+  point.start = {random.vector(model.dof(), 1.5), random.vector(model.dof(), 2.0)};
+  point.rate = 20.0;
+  return point;
+}
+
+/// The same point as constants for duals.
+[[nodiscard]] inline StagePoint<Dual> as_dual(const Model& model, const StagePoint<double>& x) {
+  StagePoint<Dual> point(model);
+  point.q = x.q.cast<Dual>();
+  point.qdot = x.qdot.cast<Dual>();
+  point.a = x.a.cast<Dual>();
+  point.u = x.u.cast<Dual>();
+  point.start = {x.start.q.cast<Dual>(), x.start.qdot.cast<Dual>()};
+  point.rate = x.rate;
+  return point;
+}
+
+/// ID(q, q̇, a) of the model's own numbers.                                       [dof]
+template <Scalar S>
+[[nodiscard]] VectorX<S> inverse_dynamics_at(const Model& model, const Mechanism<S>& mechanism,
+                                             const VectorX<S>& q, const VectorX<S>& qdot,
+                                             const VectorX<S>& a) {
+  Motion<S> motion(model.tree());
+  Dynamics<S> dynamics(model);
+  VectorX<S> tau = VectorX<S>::Zero(model.dof());
+  compute_motion<S>(model.tree(), mechanism, q, qdot, a, motion);
+  inverse_dynamics<S>(model, mechanism, motion, dynamics, tau);
+  return tau;
+}
+
+/// M(q).                                                                     [dof x dof]
+template <Scalar S>
+[[nodiscard]] MatrixX<S> mass_matrix_at(const Model& model, const Mechanism<S>& mechanism,
+                                        const VectorX<S>& q) {
+  const VectorX<S> zero = VectorX<S>::Zero(model.dof());
+  Motion<S> motion(model.tree());
+  Dynamics<S> dynamics(model);
+  VectorX<S> tau = zero;
+  MatrixX<S> M = MatrixX<S>::Zero(model.dof(), model.dof());
+  compute_motion<S>(model.tree(), mechanism, q, zero, zero, motion);
+  subtree_dynamics<S>(model, mechanism, motion, dynamics, tau);
+  mass_matrix<S>(model, motion, dynamics, M);
+  return M;
+}
+
+}  // namespace hbar::testing
