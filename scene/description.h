@@ -25,9 +25,11 @@ struct SourceLine {
 };
 
 /// Integrators a scene may name.
+/// Methods of time integration, in the order of the vocabulary.
 enum class Integrator { kBdf1, kBdf2, kSdirk2 };
 
 /// Units of a scene's numbers: centimetre and gram, or metre and kilogram; seconds in both.
+/// Unit systems, in the order of the vocabulary.
 enum class UnitSystem { kCmG, kMKg };
 
 /// `<option>`.
@@ -78,6 +80,7 @@ enum class JointType {
 }
 
 /// What a joint's placement refers to: the parent's joint frame, or the world at rest.
+/// What a joint is placed in: its parent's joint frame, or the world at rest.
 enum class Frame { kLocal, kWorld };
 
 /// `<joint>`.
@@ -129,6 +132,7 @@ struct CapsuleBody {
 
 /// What a mesh's placement places: its principal frame or its file's, in the joint frame or the
 /// world.
+/// What a mesh body's pos and quat place, in the order of the vocabulary.
 enum class MeshTransform { kBodyToJoint, kObjToJoint, kObjToWorld };
 
 /// A homogeneous solid bounded by the triangles of an OBJ file.
@@ -203,6 +207,7 @@ struct Robot {
 };
 
 /// What a motor's control is: a force, or a position to reach.
+/// What a motor's controls are: shares of its range, or set points.
 enum class Control { kForce, kPosition };
 
 /// `<motor>`: one control per coordinate of its joint.
@@ -218,12 +223,15 @@ struct Motor {
 };
 
 /// Which two shapes touch.
+/// Which element a contact was.
 enum class ContactKind { kGround, kGeneralPrimitive, kCuboidCuboid };
 
 /// How the normal force follows from the depth.
+/// Normal force: damping times depth, or damping alone.
 enum class ContactLaw { kDocument, kLinear };
 
 /// Where the other body is pushed: at the contact point, or at its own surface.
+/// Where the second body is pushed: at the contact point, or at its own surface.
 enum class Reaction { kPoint, kSurface };
 
 /// `<ground_contact>`, `<general_primitive_contact>`, `<cuboid_cuboid_contact>`.
@@ -300,6 +308,7 @@ struct VirtualCuboid {
 };
 
 /// A shape that is drawn and touches nothing.
+/// A child of `<virtual>`.
 struct VirtualShape {
   std::optional<std::string> name;
   std::variant<VirtualSphere, VirtualCuboid> shape;
