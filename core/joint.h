@@ -113,13 +113,13 @@ struct JointLimits {
 /// A joint: where its frame rests, how it moves, and the forces it exerts on itself,
 /// −stiffness (q − rest) − damping q̇ and the limit springs, per coordinate.
 struct Joint {
-  std::string name;
+  std::string name = {};
   JointKind kind = FixedJoint{};
-  RigidTransform<double> X_PJ;  ///< joint frame at rest in the parent's joint frame
-  double damping = 0.0;         ///< torque·time or force·time/length, ≥ 0
-  double stiffness = 0.0;       ///< torque/rad or force/length, ≥ 0
-  Eigen::VectorXd rest;         ///< rad or length; empty means zeros       [dof]
-  std::optional<JointLimits> limits;
+  RigidTransform<double> X_PJ = {};  ///< joint frame at rest in the parent's joint frame
+  double damping = 0.0;              ///< torque·time or force·time/length, ≥ 0
+  double stiffness = 0.0;            ///< torque/rad or force/length, ≥ 0
+  Eigen::VectorXd rest = {};         ///< rad or length; empty means zeros       [dof]
+  std::optional<JointLimits> limits = {};
 
   friend bool operator==(const Joint& a, const Joint& b) {
     return a.name == b.name && a.kind == b.kind && a.X_PJ == b.X_PJ && a.damping == b.damping &&

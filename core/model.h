@@ -16,8 +16,8 @@ enum class Units { kCentimetreGram, kMetreKilogram };
 
 /// A rigid body. Its frame sits at the centre of mass along the principal axes.
 struct Body {
-  std::string name;
-  RigidTransform<double> X_JB;                        ///< body frame in the joint frame
+  std::string name = {};
+  RigidTransform<double> X_JB = {};                   ///< body frame in the joint frame
   double mass = 0.0;                                  ///< mass, > 0
   Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  ///< principal moments, mass·length²  [3]
   Shape shape = NoShape{};
@@ -41,10 +41,10 @@ enum DesignMask : unsigned {
 
 /// A joint and the body it carries.
 struct Link {
-  std::string name;
+  std::string name = {};
   int parent = -1;  ///< link, or −1 for the world; parent < this link
-  Joint joint;
-  Body body;
+  Joint joint = {};
+  Body body = {};
   unsigned design_mask = 0;  ///< DesignMask: the parameters a scene selects
   friend bool operator==(const Link&, const Link&) = default;
 };
@@ -67,7 +67,7 @@ struct Motor {
 
 /// A point fixed in a link's joint frame whose world position is an auxiliary variable v.
 struct EndEffector {
-  std::string name;
+  std::string name = {};
   int link = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< in the joint frame, length    [3]
   friend bool operator==(const EndEffector& a, const EndEffector& b) {

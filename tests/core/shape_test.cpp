@@ -1,0 +1,119 @@
+#include "hbar/core/shape.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "hbar/core/error.h"
+#include "tests/support/numerics.h"
+
+namespace hbar {
+namespace {
+
+using testing::message_of;
+
+/// A slice of a solid at height z: its area and ∫x² dA, ∫y² dA.
+struct Slice {
+  double area;
+  double xx;
+  double yy;
+};
+
+Slice disc(double radius_squared) {
+  const double quarter = 0.25 * std::numbers::pi * radius_squared * radius_squared;
+  return {std::numbers::pi * radius_squared, quarter, quarter};
+}
+
+/// A solid as slices between heights; between two heights they are polynomials of z.
+struct SlicedSolid {
+  std::string name;
+  Shape shape;
+  std::vector<double> heights;
+  std::function<Slice(double)> slice;
+};
+
+std::vector<SlicedSolid> every_solid() {
+  return {
+      {"cuboid",
+       Cuboid{{1.0, 2.0, 3.0}},
+       {-1.5, 1.5},
+       [](double) {
+         return Slice{2.0, 2.0 / 12.0, 8.0 / 12.0};
+       }},
+      {"sphere", Sphere{0.7}, {-0.7, 0.7}, [](double z) { return disc(0.49 - z * z); }},
+      {"cylinder", Cylinder{0.3, 1.4}, {-0.7, 0.7}, [](double) { return disc(0.09); }},
+      {"capsule",
+       Capsule{0.3, 1.4},
+       {-1.0, -0.7, 0.7, 1.0},
+       [](double z) {
+         const double beyond = std::max(std::abs(z) - 0.7, 0.0);
+         return disc(0.09 - beyond * beyond);
+       }},
+  };
+}
+
+/// Mass and ∫x², ∫y², ∫z² dm by Gauss-Legendre quadrature, exact for these slices.
+Eigen::Vector4d integrate(const SlicedSolid& solid, double density) {
+  constexpr std::array<double, 5> kNodes = {-0.906179845938663993, -0.538469310105683091, 0.0,
+                                            0.538469310105683091, 0.906179845938663993};
+  constexpr std::array<double, 5> kWeights = {0.236926885056189088, 0.478628670499366468,
+                                              0.568888888888888889, 0.478628670499366468,
+                                              0.236926885056189088};
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  for (std::size_t part = 0; part + 1 < solid.heights.size(); ++part) {
+    const double half = 0.5 * (solid.heights[part + 1] - solid.heights[part]);
+    const double middle = 0.5 * (solid.heights[part + 1] + solid.heights[part]);
+    for (std::size_t k = 0; k < kNodes.size(); ++k) {
+      const double z = middle + half * kNodes[k];
+      const Slice slice = solid.slice(z);
+      sum += density * half * kWeights[k] *
+             Eigen::Vector4d(slice.area, slice.xx, slice.yy, slice.area * z * z);
+    }
+  }
+  return sum;
+}
+
+TEST(EverySolid, HasTheMassAndMomentsOfItsSlices) {
+  const double density = 2.5;
+  for (const SlicedSolid& solid : every_solid()) {
+    const MassProperties properties = solid_mass_properties(solid.shape, density);
+    const Eigen::Vector4d sums = integrate(solid, density);
+    const Eigen::Vector3d moments(sums[2] + sums[3], sums[1] + sums[3], sums[1] + sums[2]);
+    EXPECT_NEAR(properties.mass, sums[0], 1e-14 * sums[0]) << solid.name;
+    EXPECT_LT(testing::relative_gap(properties.inertia, moments), 1e-14) << solid.name;
+  }
+}
+
+TEST(SolidMassProperties, RefusesWhatIsNoSolid) {
+  const double nan = std::nan("");
+  struct Case {
+    Shape shape;
+    double density;
+    std::string message;
+  };
+  const std::vector<Case> cases = {
+      {NoShape{}, 1.0, "a body without a shape has no volume; give its mass"},
+      {Sphere{1.0}, 0.0, "the density is 0; it must be positive and finite"},
+      {Sphere{1.0}, nan, "the density is nan; it must be positive and finite"},
+      {Cuboid{{1.0, -2.0, 1.0}}, 1.0, "a side of the cuboid is -2; it must be positive and finite"},
+      {Sphere{0.0}, 1.0, "the radius of the sphere is 0; it must be positive and finite"},
+      {Cylinder{-1.0, 1.0}, 1.0,
+       "the radius of the cylinder is -1; it must be positive and finite"},
+      {Cylinder{1.0, 0.0}, 1.0, "the length of the cylinder is 0; it must be positive and finite"},
+      {Capsule{0.0, 1.0}, 1.0, "the radius of the capsule is 0; it must be positive and finite"},
+      {Capsule{1.0, 1.0 / 0.0}, 1.0,
+       "the length of the capsule is inf; it must be positive and finite"},
+  };
+  for (const Case& bad : cases) {
+    EXPECT_EQ(message_of<InvalidInput>(
+                  [&] { static_cast<void>(solid_mass_properties(bad.shape, bad.density)); }),
+              "solid_mass_properties: " + bad.message);
+  }
+}
+
+}  // namespace
+}  // namespace hbar
