@@ -53,7 +53,7 @@ int main() {
   <robot>
     <link>
       <joint type="revolute" axis="0 1 0"/>
-      <body type="cuboid" lengths="1 1 10" pos="0 0 -5" density="1"/>
+      <body type="cuboid" size="1 1 10" pos="0 0 -5" density="1"/>
     </link>
   </robot>
 </redmax>)",
