@@ -51,7 +51,7 @@ int main() {
   const auto scene = hbar::scene::read_scene_text(
       R"(<redmax model="pendulum">
   <robot>
-    <link>
+    <link name="rod">
       <joint type="revolute" axis="0 1 0"/>
       <body type="cuboid" size="1 1 10" pos="0 0 -5" density="1"/>
     </link>
