@@ -126,10 +126,13 @@ void BlockSubstitution::do_solve(System system, MatrixSpan X) {
   }
 }
 
+SparseColumn BlockSubstitution::below_block(int column) const {
+  const int begin = below_[static_cast<std::size_t>(column)];
+  return {matrix().innerIndexPtr() + begin, matrix().valuePtr() + begin,
+          matrix().outerIndexPtr()[column + 1] - begin};
+}
+
 void BlockSubstitution::substitute_forward(MatrixSpan X) const {
-  const SparseMatrix& A = matrix();
-  const int* rows = A.innerIndexPtr();
-  const double* values = A.valuePtr();
   for (int b = 0; b < block_count(); ++b) {
     const int first = block_begin(b);
     const int size = block_size(b);
@@ -138,34 +141,18 @@ void BlockSubstitution::substitute_forward(MatrixSpan X) const {
     solve_block(factors_[static_cast<std::size_t>(b)], System::kPlain, X_b);
     for (Eigen::Index r = 0; r < X.cols(); ++r) {
       double* x = X.col(r).data();
-      for (int j = first; j < first + size; ++j) {
-        const double x_j = x[j];
-        const int end = A.outerIndexPtr()[j + 1];
-        for (int k = below_[static_cast<std::size_t>(j)]; k < end; ++k) {
-          x[rows[k]] -= values[k] * x_j;
-        }
-      }
+      for (int j = first; j < first + size; ++j) below_block(j).subtract_from(x, x[j]);
     }
   }
 }
 
 void BlockSubstitution::substitute_backward(MatrixSpan X) const {
-  const SparseMatrix& A = matrix();
-  const int* rows = A.innerIndexPtr();
-  const double* values = A.valuePtr();
   for (int b = block_count() - 1; b >= 0; --b) {
     const int first = block_begin(b);
     const int size = block_size(b);
     for (Eigen::Index r = 0; r < X.cols(); ++r) {
       double* x = X.col(r).data();
-      for (int j = first; j < first + size; ++j) {
-        const int end = A.outerIndexPtr()[j + 1];
-        double sum = 0.0;
-        for (int k = below_[static_cast<std::size_t>(j)]; k < end; ++k) {
-          sum += values[k] * x[rows[k]];
-        }
-        x[j] -= sum;
-      }
+      for (int j = first; j < first + size; ++j) x[j] -= below_block(j).dot(x);
     }
     auto X_b = X.middleRows(first, size);
     if ((X_b.array() == 0.0).all()) continue;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hbar/solvers/linear_solver.h"
+#include "hbar/solvers/sparse_column.h"
 
 namespace hbar::solvers {
 
@@ -41,6 +42,7 @@ class BlockSubstitution final : public LinearSolver {
   void factorize_block(int block);
   void substitute_forward(MatrixSpan X) const;
   void substitute_backward(MatrixSpan X) const;
+  [[nodiscard]] SparseColumn below_block(int column) const;
   [[nodiscard]] int block_of(int row) const;
   [[nodiscard]] int block_begin(int block) const { return begin_[static_cast<std::size_t>(block)]; }
   [[nodiscard]] int block_size(int block) const {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "hbar/solvers/sparse_column.h"
 
 namespace hbar::solvers {
 namespace {
@@ -107,6 +110,13 @@ void LinearSolver::measure_matrix() {
     norm_one_ = std::max(norm_one_, column_sum);
   }
   norm_inf_ = row_sum_.maxCoeff();
+}
+
+/// Largest magnitude of each column of the row-scaled matrix.
+void LinearSolver::measure_columns() {
+  const int* begin = matrix_.outerIndexPtr();
+  const int* rows = matrix_.innerIndexPtr();
+  const double* values = matrix_.valuePtr();
   for (int j = 0; j < matrix_.cols(); ++j) {
     double largest = 0.0;
     for (int k = begin[j]; k < begin[j + 1]; ++k) {
@@ -117,8 +127,8 @@ void LinearSolver::measure_matrix() {
   }
 }
 
-int LinearSolver::find_small_pivot(std::span<const double> pivots,
-                                   std::span<const int> columns) const {
+int LinearSolver::find_small_pivot(std::span<const double> pivots, std::span<const int> columns) {
+  measure_columns();
   for (std::size_t k = 0; k < pivots.size(); ++k) {
     // Written so that a pivot that is not a number is found, too.
     if (!(std::abs(pivots[k]) > kPivotFloor * column_max_[columns[k]])) return static_cast<int>(k);
@@ -173,21 +183,15 @@ void LinearSolver::solve(System system, const MatrixView& B, MatrixSpan X) {
 /// Leaves b − A x in residual_, and returns it scaled; not a number if x is not finite.
 double LinearSolver::scaled_residual(System system, const VectorView<double>& b,
                                      const VectorView<double>& x) {
-  const int* begin = matrix_.outerIndexPtr();
-  const int* rows = matrix_.innerIndexPtr();
-  const double* values = matrix_.valuePtr();
   residual_ = b;
-  if (system == System::kPlain) {
-    for (int j = 0; j < matrix_.cols(); ++j) {
-      const double x_j = x[j];
-      if (x_j == 0.0) continue;
-      for (int k = begin[j]; k < begin[j + 1]; ++k) residual_[rows[k]] -= values[k] * x_j;
-    }
-  } else {
-    for (int j = 0; j < matrix_.cols(); ++j) {
-      double sum = 0.0;
-      for (int k = begin[j]; k < begin[j + 1]; ++k) sum += values[k] * x[rows[k]];
-      residual_[j] -= sum;
+  for (int j = 0; j < matrix_.cols(); ++j) {
+    const int begin = matrix_.outerIndexPtr()[j];
+    const SparseColumn column = {matrix_.innerIndexPtr() + begin, matrix_.valuePtr() + begin,
+                                 matrix_.outerIndexPtr()[j + 1] - begin};
+    if (system == System::kTransposed) {
+      residual_[j] -= column.dot(x.data());
+    } else if (x[j] != 0.0) {
+      column.subtract_from(residual_.data(), x[j]);
     }
   }
   if (!x.allFinite()) return std::numeric_limits<double>::quiet_NaN();

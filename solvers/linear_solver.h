@@ -118,8 +118,7 @@ class LinearSolver {
   ///
   /// @param pivots   of the row-scaled matrix               [n]
   /// @param columns  column of A of each pivot, from 0      [n]
-  [[nodiscard]] int find_small_pivot(std::span<const double> pivots,
-                                     std::span<const int> columns) const;
+  [[nodiscard]] int find_small_pivot(std::span<const double> pivots, std::span<const int> columns);
 
   /// Throws the NumericalFailure of a singular matrix.
   ///
@@ -135,6 +134,7 @@ class LinearSolver {
 
  private:
   void measure_matrix();
+  void measure_columns();
   void check_solution(System system, const MatrixView& B, MatrixSpan X);
   double scaled_residual(System system, const VectorView<double>& b, const VectorView<double>& x);
 

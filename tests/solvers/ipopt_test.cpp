@@ -201,14 +201,29 @@ TEST(Ipopt, StopsAtItsLimits) {
   EXPECT_FALSE(result.converged());
 }
 
+/// One unknown, two equations: x = 1 and 2x = 3.
+class TwoEquations : public testing::Program {
+ public:
+  TwoEquations() : Program(Eigen::VectorXd::Zero(1), 2) {
+    limits_.lower << 1.0, 3.0;
+    limits_.upper = limits_.lower;
+  }
+  double objective(const Eigen::VectorXd& x) override { return x[0]; }
+  void objective_gradient(const Eigen::VectorXd&, Eigen::VectorXd& g) override { g << 1.0; }
+  void constraints(const Eigen::VectorXd& x, Eigen::VectorXd& c) override { c << x[0], 2.0 * x[0]; }
+  void constraint_jacobian(const Eigen::VectorXd&, Eigen::VectorXd& values) override {
+    values << 1.0, 2.0;
+  }
+};
+
 TEST(Ipopt, SaysWhenThereAreTooManyEquations) {
-  Hs071 program;
-  program.variables_.lower.head(3) = program.variables_.upper.head(3) = Eigen::Vector3d(2, 2, 2);
-  program.variables_.start.head(3) << 2, 2, 2;
-  program.limits_.upper[0] = 25.0;
+  TwoEquations program;
   const IpoptResult result = solve_with_ipopt(program);
   EXPECT_FALSE(result.converged());
   EXPECT_EQ(result.status, IpoptStatus::kTooFewVariables) << result.message;
+  EXPECT_EQ(result.x.size(), 1);
+  EXPECT_NE(result.message.find("remove equations or free variables"), std::string::npos)
+      << result.message;
 }
 
 TEST(Ipopt, RunsOneOptimisationAtATimeForSeveralThreads) {
