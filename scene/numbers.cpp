@@ -25,7 +25,7 @@ std::optional<Number> parse(std::string_view word, const char* what, std::string
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = end == digits.data() + digits.size();
   if (error == std::errc::result_out_of_range && whole) {
-    reason = concat("\"", quotable(word), "\" is beyond the range of ", what);
+    reason = concat("\"", quotable(word), "\" is too large or too small");
     return std::nullopt;
   }
   if (error != std::errc() || !whole || !std::isfinite(static_cast<double>(value))) {

@@ -1,17 +1,10 @@
 #pragma once
 
-#include <vector>
-
 #include "hbar/scene/description.h"
 #include "hbar/scene/xml_element.h"
 
 /// The parts read_xml.cpp is made of. All of them throw InvalidInput as XmlElement does.
 namespace hbar::scene {
-
-/// The child elements of an element, in file order, each known, in its place and not too often;
-/// text between them is noticed and dropped.
-[[nodiscard]] std::vector<const tinyxml2::XMLElement*> checked_children(
-    const tinyxml2::XMLElement& parent, ReadContext& context);
 
 /// Remembers the attributes of the elements in a `<default>` block, having checked their texts.
 void read_defaults(const tinyxml2::XMLElement& block, ReadContext& context);

@@ -31,9 +31,9 @@ void check_limits(const XmlElement& element, const Joint& joint) {
   if (!joint.lim || joint.type == JointType::kFixed) return;
   if ((*joint.lim)[0] <= 0.0 && (*joint.lim)[1] >= 0.0) return;
   if (joint.lim_stiffness > 0.0) {
-    element.context().notice(element.line(),
-                             concat("<joint>: the limits of joint ", joint.name,
-                                    " exclude its start configuration 0; their spring pulls it"));
+    element.context().notice(
+        element.line(),
+        "<joint>: the limits exclude the start configuration 0; their spring pulls it");
     return;
   }
   element.fail("lim", "the start configuration 0 is outside the limits",

@@ -4,35 +4,12 @@
 
 #include <utility>
 
-#include "hbar/core/nearest_name.h"
-#include "hbar/scene/numbers.h"
 #include "hbar/scene/read_elements.h"
 #include "hbar/scene/text_file.h"
 #include "hbar/scene/xml_document.h"
 
 namespace hbar::scene {
 namespace {
-
-/// Throws unless an element may stand in its parent.
-void check_placement(const tinyxml2::XMLElement& xml, std::string_view parent,
-                     const ReadContext& context) {
-  const std::string place = element_place(context, xml.GetLineNum(), xml.Name());
-  const ElementInfo* const element = find_element(xml.Name());
-  const std::vector<std::string> allowed = children_of(parent);
-  if (element == nullptr) {
-    const std::string hint = allowed.empty() ? concat("<", parent, "> has no elements in it")
-                                             : unknown_name_hint(xml.Name(), allowed);
-    throw InvalidInput(place + concat("unknown element in <", parent, ">; ") + hint);
-  }
-  if (!is_listed(element->parents, '|', parent)) {
-    std::string where;
-    for (const std::string& one : listed(element->parents, '|')) {
-      where += (where.empty() ? "<" : " or <") + one + ">";
-    }
-    throw InvalidInput(place + concat("cannot stand in <", parent, ">; it belongs in ",
-                                      where.empty() ? "no other element" : where));
-  }
-}
 
 /// One reader per container: what its children are and where they go.
 class SceneReader {
@@ -117,30 +94,6 @@ class SceneReader {
 };
 
 }  // namespace
-
-std::vector<const tinyxml2::XMLElement*> checked_children(const tinyxml2::XMLElement& parent,
-                                                          ReadContext& context) {
-  const std::string_view name = parent.Name();
-  std::vector<const tinyxml2::XMLElement*> children;
-  std::map<std::string, int, std::less<>> first_lines;
-  for (const tinyxml2::XMLNode* node = parent.FirstChild(); node; node = node->NextSibling()) {
-    if (node->ToText() != nullptr) {
-      context.notice(node->GetLineNum(), concat("<", name, ">: the text \"",
-                                                quotable(node->Value()), "\" has no effect"));
-    }
-    const tinyxml2::XMLElement* const child = node->ToElement();
-    if (child == nullptr) continue;
-    check_placement(*child, name, context);
-    const auto [first, is_new] = first_lines.emplace(child->Name(), child->GetLineNum());
-    if (!is_new && find_element(child->Name())->single && name != "default") {
-      throw InvalidInput(element_place(context, child->GetLineNum(), child->Name()) +
-                         concat("a second one in this <", name, ">, the first is in line ",
-                                first->second, "; at most one is allowed"));
-    }
-    children.push_back(child);
-  }
-  return children;
-}
 
 void read_defaults(const tinyxml2::XMLElement& block, ReadContext& context) {
   const XmlElement checked(block, context);

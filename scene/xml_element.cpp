@@ -15,6 +15,27 @@ namespace {
 /// Squared length of a quaternion that counts as one already, so that reading is idempotent.
 constexpr double kUnitSlack = 8.0 * std::numeric_limits<double>::epsilon();
 
+/// Throws unless an element may stand in its parent.
+void check_placement(const tinyxml2::XMLElement& xml, std::string_view parent,
+                     const ReadContext& context) {
+  const std::string place = element_place(context, xml.GetLineNum(), xml.Name());
+  const ElementInfo* const element = find_element(xml.Name());
+  const std::vector<std::string> allowed = children_of(parent);
+  if (element == nullptr) {
+    const std::string hint = allowed.empty() ? concat("<", parent, "> has no elements in it")
+                                             : unknown_name_hint(xml.Name(), allowed);
+    throw InvalidInput(place + concat("unknown element in <", parent, ">; ") + hint);
+  }
+  if (!is_listed(element->parents, '|', parent)) {
+    std::string where;
+    for (const std::string& one : listed(element->parents, '|')) {
+      where += (where.empty() ? "<" : " or <") + one + ">";
+    }
+    throw InvalidInput(place + concat("cannot stand in <", parent, ">; it belongs in ",
+                                      where.empty() ? "no other element" : where));
+  }
+}
+
 }  // namespace
 
 void ReadContext::notice(int line, std::string_view text) {
@@ -40,6 +61,7 @@ XmlElement::XmlElement(const tinyxml2::XMLElement& xml, ReadContext& context)
     throw InvalidInput(element_place(context, line_, xml.Name()) + "unknown element");
   }
   check_attribute_names();
+  if (children_of(name()).empty()) static_cast<void>(checked_children(xml, context));
 }
 
 void XmlElement::check_attribute_names() const {
@@ -284,6 +306,30 @@ std::array<double, 4> XmlElement::quaternion(std::string_view attribute) const {
   const double length = std::sqrt(squared_length(q));
   for (double& v : q) v /= length;
   return q;
+}
+
+std::vector<const tinyxml2::XMLElement*> checked_children(const tinyxml2::XMLElement& parent,
+                                                          ReadContext& context) {
+  const std::string_view name = parent.Name();
+  std::vector<const tinyxml2::XMLElement*> children;
+  std::map<std::string, int, std::less<>> first_lines;
+  for (const tinyxml2::XMLNode* node = parent.FirstChild(); node; node = node->NextSibling()) {
+    if (node->ToText() != nullptr) {
+      context.notice(node->GetLineNum(), concat("<", name, ">: the text \"",
+                                                quotable(node->Value()), "\" has no effect"));
+    }
+    const tinyxml2::XMLElement* const child = node->ToElement();
+    if (child == nullptr) continue;
+    check_placement(*child, name, context);
+    const auto [first, is_new] = first_lines.emplace(child->Name(), child->GetLineNum());
+    if (!is_new && find_element(child->Name())->single && name != "default") {
+      throw InvalidInput(element_place(context, child->GetLineNum(), child->Name()) +
+                         concat("a second one in this <", name, ">, the first is in line ",
+                                first->second, "; at most one is allowed"));
+    }
+    children.push_back(child);
+  }
+  return children;
 }
 
 }  // namespace hbar::scene

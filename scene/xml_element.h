@@ -123,6 +123,11 @@ class XmlElement {
   int line_ = 0;
 };
 
+/// The child elements of an element, in file order, each known, in its place and not too often;
+/// text between them is noticed and dropped.
+[[nodiscard]] std::vector<const tinyxml2::XMLElement*> checked_children(
+    const tinyxml2::XMLElement& parent, ReadContext& context);
+
 /// The beginning of every message about an element: "file:line: <element>: ".
 [[nodiscard]] std::string element_place(const ReadContext& context, int line,
                                         std::string_view element);

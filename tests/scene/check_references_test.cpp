@@ -1,0 +1,75 @@
+#include "tests/scene/scene_testing.h"
+
+namespace hbar::scene {
+namespace {
+
+TEST(References, MayPrecedeWhatTheyName) {
+  EXPECT_NO_THROW(static_cast<void>(
+      read_scene_text(scene_with_section("<actuator><motor joint=\"j\"/></actuator>"
+                                         "<contact><ground_contact body=\"b\"/></contact>"
+                                         "<variable><endeffector joint=\"k\"/></variable>"),
+                      "a.xml")));
+}
+
+TEST(References, NamesOfDifferentKindsMayBeEqual) {
+  EXPECT_NO_THROW(static_cast<void>(read_scene_text(
+      scene_with_section("<robot><link name=\"b\"><joint name=\"d\" type=\"fixed\"/><body "
+                         "name=\"j\" type=\"sphere\" radius=\"1\"/></link></robot>"),
+      "a.xml")));
+}
+
+const std::vector<BadScene> kRefused = {
+    {"motor of a missing joint", scene_with_section("<actuator><motor joint=\"jj\"/></actuator>"),
+     "bad.xml:2: <motor joint=\"jj\">: no joint has this name; did you mean 'j'?"},
+    {"motor of a fixed joint", scene_with_section("<actuator><motor joint=\"k\"/></actuator>"),
+     "bad.xml:2: <motor joint=\"k\">: this joint is fixed; motors drive joints that move"},
+    {"two motors on one joint",
+     scene_with_section("<actuator><motor joint=\"j\"/>\n<motor joint=\"j\"/></actuator>"),
+     "bad.xml:3: <motor joint=\"j\">: the motor of line 2 drives this joint; a joint has at most "
+     "one motor"},
+    {"end effector of a missing joint",
+     scene_with_section("<variable><endeffector joint=\"finger_tip\"/></variable>"),
+     "bad.xml:2: <endeffector joint=\"finger_tip\">: no joint has this name; known: j, k"},
+    {"contact of a missing body",
+     scene_with_section("<contact><ground_contact body=\"x\"/></contact>"),
+     "bad.xml:2: <ground_contact body=\"x\">: no body has this name; did you mean 'b'?"},
+    {"contact with a missing body",
+     scene_with_section(
+         "<contact><general_primitive_contact general_body=\"b\" primitive_body=\"x\"/></contact>"),
+     "bad.xml:2: <general_primitive_contact primitive_body=\"x\">: no body has this name; did you "
+     "mean 'b'?"},
+    {"contact with itself",
+     scene_with_section(
+         "<contact><general_primitive_contact general_body=\"b\" primitive_body=\"b\"/></contact>"),
+     "bad.xml:2: <general_primitive_contact primitive_body=\"b\">: a body does not touch itself; "
+     "name two bodies"},
+    {"cuboid contact of a ball",
+     scene_with_section("<contact><cuboid_cuboid_contact body_a=\"b\" body_b=\"d\"/></contact>"),
+     "bad.xml:2: <cuboid_cuboid_contact body_a=\"b\">: this body is not a cuboid; both must be"},
+    {"sensor on a missing body",
+     scene_with_section("<sensor><tactile body=\"x\" type=\"abstract\" spec=\"s.txt\"/></sensor>"),
+     "bad.xml:2: <tactile body=\"x\">: no body has this name; did you mean 'b'?"},
+    {"two sensors of one name",
+     scene_with_section("<sensor><tactile body=\"b\" type=\"abstract\" spec=\"s.txt\"/><tactile "
+                        "body=\"b\" type=\"abstract\" spec=\"s.txt\"/></sensor>"),
+     "bad.xml:2: <tactile name=\"b\">: the tactile of line 2 has this name; names of tactiles must "
+     "differ"},
+    {"two links of one name",
+     scene_with_section("<robot><link name=\"a\"><joint name=\"x\" type=\"fixed\"/><body "
+                        "name=\"x\" type=\"sphere\" radius=\"1\"/></link></robot>"),
+     "bad.xml:4: <link name=\"a\">: the link of line 2 has this name; names of links must differ"},
+    {"two joints of one name",
+     scene_with_section("<robot><link name=\"x\"><joint name=\"j\" type=\"fixed\"/><body "
+                        "name=\"x\" type=\"sphere\" radius=\"1\"/></link></robot>"),
+     "bad.xml:5: <joint name=\"j\">: the joint of line 2 has this name; names of joints must "
+     "differ"},
+    {"two bodies of one name",
+     scene_with_section("<robot><link name=\"x\"><joint name=\"x\" type=\"fixed\"/><body "
+                        "name=\"b\" type=\"sphere\" radius=\"1\"/></link></robot>"),
+     "bad.xml:6: <body name=\"b\">: the body of line 2 has this name; names of bodies must differ"},
+};
+
+TEST(References, RefusesWithTheWholeMessage) { expect_refused(kRefused); }
+
+}  // namespace
+}  // namespace hbar::scene
