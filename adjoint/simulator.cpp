@@ -96,8 +96,12 @@ Simulator::Simulator(Model model, ParameterSet parameters, SimulationOptions opt
   check_options();
   const double stages = 2.0 * options_.steps;
   keep_factors_ = options_.keep_factors && stages * bytes_per_stage(true) <= options_.max_memory;
-  work_ = std::make_shared<Workspace>(*model_);
+  work_ = std::make_unique<Workspace>(*model_);
 }
+
+Simulator::~Simulator() = default;
+Simulator::Simulator(Simulator&&) noexcept = default;
+Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
 double Simulator::bytes_per_stage(bool with_factors) const {
   const double n = model_->dof();

@@ -67,12 +67,15 @@ struct TrajectoryValues {
 
 /// Solves ḡ(q̄, p) = 0 stage by stage: the forward simulation.
 ///
-/// Holds its workspace and belongs to one thread at a time; copies of the model are shared.
+/// Holds its workspace and belongs to one thread at a time; another thread makes its own.
 class Simulator {
  public:
   /// @throws InvalidInput for an unknown integrator, h or steps that are not positive, or a horizon
   ///         that would not fit into options.max_memory
   Simulator(Model model, ParameterSet parameters, SimulationOptions options);
+  ~Simulator();
+  Simulator(Simulator&&) noexcept;
+  Simulator& operator=(Simulator&&) noexcept;
 
   /// Parameters at their nominal values, controls and initial state zero.
   [[nodiscard]] Inputs nominal_inputs() const;
@@ -111,7 +114,7 @@ class Simulator {
   SimulationOptions options_;
   const Integrator* integrator_ = nullptr;
   bool keep_factors_ = true;
-  std::shared_ptr<Workspace> work_;
+  std::unique_ptr<Workspace> work_;
 };
 
 }  // namespace hbar

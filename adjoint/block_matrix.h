@@ -1,0 +1,47 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "hbar/core/tree.h"
+#include "hbar/solvers/linear_solver.h"
+
+namespace hbar {
+
+/// Rows of a dof x dof block that can be non-zero, per column: the coordinates on the same path
+/// (branch-induced sparsity), ascending.
+[[nodiscard]] std::vector<std::vector<int>> tree_pattern(const Tree& tree);
+
+/// A compressed sparse column matrix made of equally sized blocks of one pattern. The pattern is
+/// laid out once; after that only values change.
+class BlockMatrix {
+ public:
+  BlockMatrix() = default;
+
+  /// @param block_rows, block_columns  counts of blocks
+  /// @param blocks   (row, column) of each, in the order set_block will name them by; within a
+  ///                 column ascending by row
+  /// @param pattern  of one block, by column                                     [dof]
+  BlockMatrix(int block_rows, int block_columns, const std::vector<std::pair<int, int>>& blocks,
+              const std::vector<std::vector<int>>& pattern);
+
+  /// Overwrites the values of a block.
+  ///
+  /// @param index  as in the constructor's list
+  /// @param dense  entries outside the pattern are not read                    [dof x dof]
+  void set_block(std::size_t index, const Eigen::Ref<const Eigen::MatrixXd>& dense);
+
+  [[nodiscard]] const solvers::SparseMatrix& matrix() const { return matrix_; }
+
+ private:
+  struct Place {
+    int column = 0;  // block column
+    int rank = 0;    // among the blocks of its column
+  };
+
+  solvers::SparseMatrix matrix_;
+  std::vector<Place> places_;
+  std::vector<std::vector<int>> pattern_;
+};
+
+}  // namespace hbar

@@ -1,0 +1,273 @@
+#include "hbar/adjoint/check_gradient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <random>
+
+#include "hbar/adjoint/gradient.h"
+#include "hbar/adjoint/tangent.h"
+
+namespace hbar {
+namespace {
+
+/// Flat view of inputs: p, then u step by step, then q0, then q̇0.
+Eigen::VectorXd flatten(const Eigen::VectorXd& p, const Eigen::MatrixXd& u,
+                        const Eigen::VectorXd& q0, const Eigen::VectorXd& qdot0) {
+  Eigen::VectorXd flat(p.size() + u.size() + q0.size() + qdot0.size());
+  flat << p, u.reshaped(), q0, qdot0;
+  return flat;
+}
+
+Inputs unflatten(const Inputs& shape, const Eigen::VectorXd& flat) {
+  Inputs out = shape;
+  Eigen::Index at = 0;
+  const auto take = [&](auto&& part) {
+    part = flat.segment(at, part.size());
+    at += part.size();
+  };
+  take(out.p.reshaped());
+  take(out.u.reshaped());
+  take(out.q0.reshaped());
+  take(out.qdot0.reshaped());
+  return out;
+}
+
+/// The entries of the flat inputs that belong to one class, and a typical size of each.
+struct InputClass {
+  std::string name;
+  std::vector<Eigen::Index> entries;
+  std::vector<double> scales;
+};
+
+/// How far a parameter may be moved: a share of its nominal value; moments no further than what
+/// keeps their triangle possible.
+double probe_size(const Model& model, const Parameter& parameter) {
+  double size = std::abs(parameter.nominal);
+  if (parameter.kind == ParameterKind::kInertia) {
+    const Eigen::Vector3d& I = model.link(parameter.owner).body.inertia;
+    size = std::min(size, I.sum() - 2.0 * I.maxCoeff());
+  }
+  return size > 0.0 ? 0.3 * size : 1.0;
+}
+
+std::vector<InputClass> input_classes(const Problem& problem) {
+  const ParameterSet& set = problem.simulator.parameters();
+  std::vector<InputClass> classes;
+  for (const ParameterKind kind : parameter_kinds()) {
+    InputClass next{std::string(kind_name(kind)), {}, {}};
+    for (int i = 0; i < set.size(); ++i) {
+      if (set[i].kind == kind) {
+        next.entries.push_back(i);
+        next.scales.push_back(probe_size(problem.simulator.model(), set[i]));
+      }
+    }
+    classes.push_back(std::move(next));
+  }
+  Eigen::Index at = set.size();
+  const auto add = [&](const char* name, Eigen::Index size) {
+    InputClass next{name, {}, {}};
+    for (Eigen::Index i = 0; i < size; ++i) {
+      next.entries.push_back(at + i);
+      next.scales.push_back(1.0);
+    }
+    at += size;
+    classes.push_back(std::move(next));
+  };
+  add("controls", problem.inputs.u.size());
+  add("initial position", problem.inputs.q0.size());
+  add("initial velocity", problem.inputs.qdot0.size());
+  std::erase_if(classes, [](const InputClass& c) { return c.entries.empty(); });
+  return classes;
+}
+
+Directions as_directions(const Simulator& simulator, const Inputs& shape,
+                         const Eigen::VectorXd& flat) {
+  const Inputs parts = unflatten(shape, flat);
+  Directions out = Directions::zero(simulator, 1);
+  out.p.col(0) = parts.p;
+  out.u.col(0) = parts.u.reshaped();
+  out.q0.col(0) = parts.q0;
+  out.qdot0.col(0) = parts.qdot0;
+  return out;
+}
+
+/// Least-squares slope of log y over log x.
+double log_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  double sx = 0.0;
+  double sy = 0.0;
+  double sxx = 0.0;
+  double sxy = 0.0;
+  const auto n = static_cast<double>(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double u = std::log(x[i]);
+    const double v = std::log(y[i]);
+    sx += u;
+    sy += v;
+    sxx += u * u;
+    sxy += u * v;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+/// Everything the probes of one problem share.
+class Prober {
+ public:
+  Prober(Problem& problem, const GradientCheckOptions& options)
+      : problem_(problem),
+        options_(options),
+        simulator_(tightened(problem.simulator)),
+        random_(options.seed) {
+    const Trajectory trajectory = simulator_.rollout(problem.inputs).trajectory();
+    const TrajectoryValues values = simulator_.values(trajectory);
+    const TrajectoryPartials partials = problem.objective.partials(values);
+    partials_ = std::make_unique<TrajectoryPartials>(partials);
+    value_ = problem.objective.value(values);
+    const Gradient g = AdjointSweep(simulator_).pull_back(trajectory, partials);
+    gradient_ = flatten(g.p, g.u, g.q0, g.qdot0);
+    x_ = flatten(problem.inputs.p, problem.inputs.u, problem.inputs.q0, problem.inputs.qdot0);
+    trajectory_ = trajectory;
+    tangent_ = std::make_unique<TangentSweep>(simulator_);
+  }
+
+  GradientCheckRow check(const InputClass& inputs) {
+    GradientCheckRow row;
+    row.name = inputs.name;
+    row.size = static_cast<int>(inputs.entries.size());
+    row.taylor_slope = 2.0;
+    row.remainder_vanishes = true;
+    for (int i = 0; i < options_.directions; ++i) {
+      probe(inputs, row);
+    }
+    const bool slope_fits =
+        row.remainder_vanishes || std::abs(row.taylor_slope - 2.0) <= options_.slope_tolerance;
+    row.passed = row.difference_gap <= options_.difference_bound && slope_fits &&
+                 row.dot_gap <= options_.dot_bound;
+    return row;
+  }
+
+ private:
+  static Simulator tightened(const Simulator& simulator) {
+    SimulationOptions options = simulator.options();
+    options.newton.rtol = std::min(options.newton.rtol, 1e-13);
+    return Simulator(simulator.model(), simulator.parameters(), options);
+  }
+
+  double value_at(const Eigen::VectorXd& x) {
+    const Rollout rollout = simulator_.rollout(unflatten(problem_.inputs, x));
+    return problem_.objective.value(simulator_.values(rollout.trajectory()));
+  }
+
+  void probe(const InputClass& inputs, GradientCheckRow& row) {
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(x_.size());
+    double class_norm = 0.0;
+    for (std::size_t i = 0; i < inputs.entries.size(); ++i) {
+      d[inputs.entries[i]] = uniform(random_) * inputs.scales[i];
+      // Measured in the class's own sizes, so that a mass and a moment weigh alike.
+      class_norm += std::pow(gradient_[inputs.entries[i]] * inputs.scales[i], 2);
+    }
+    class_norm = std::sqrt(class_norm);
+    const double slope = gradient_.dot(d);
+    const double scale = std::max(class_norm, 1e-12 * std::abs(value_));
+    if (scale == 0.0) {
+      return;
+    }
+    row.dot_gap = std::max(row.dot_gap, std::abs(slope - tangent_slope(d)) / scale);
+    differences(d, slope, scale, row);
+  }
+
+  double tangent_slope(const Eigen::VectorXd& d) {
+    const Directions directions = as_directions(simulator_, problem_.inputs, d);
+    const Tangents tangents = tangent_->push_forward(trajectory_, directions);
+    return directional_derivative(*partials_, tangents, directions, 0);
+  }
+
+  /// Central differences, extrapolated once, at steps from 1e-2 down: the best of them counts.
+  /// The Taylor remainder is followed while it stands well above rounding.
+  void differences(const Eigen::VectorXd& d, double slope, double scale, GradientCheckRow& row) {
+    constexpr int kSteps = 12;
+    const double rounding = 1e-13 * std::max(std::abs(value_), scale);
+    std::vector<double> steps;
+    std::vector<double> remainders;
+    double best = std::numeric_limits<double>::infinity();
+    double last_difference = 0.0;
+    double step = 2e-2;
+    for (int i = 0; i < kSteps; ++i, step *= 0.5) {
+      const double ahead = value_at(x_ + step * d);
+      const double behind = value_at(x_ - step * d);
+      const double difference = (ahead - behind) / (2.0 * step);
+      best = std::min(best, std::abs(difference - slope));
+      if (i > 0) {
+        const double extrapolated = (4.0 * difference - last_difference) / 3.0;
+        best = std::min(best, std::abs(extrapolated - slope));
+      }
+      last_difference = difference;
+      const double remainder = std::abs(ahead - value_ - step * slope);
+      if (remainder > 1e3 * rounding) {
+        steps.push_back(step);
+        remainders.push_back(remainder);
+      }
+    }
+    row.difference_gap = std::max(row.difference_gap, best / scale);
+    if (steps.size() >= 4) {
+      // The smallest half of the steps: the asymptotic part.
+      const auto tail = static_cast<std::ptrdiff_t>(std::max<std::size_t>(4, steps.size() / 2));
+      const double order =
+          log_slope({steps.end() - tail, steps.end()}, {remainders.end() - tail, remainders.end()});
+      row.remainder_vanishes = false;
+      if (std::abs(order - 2.0) >= std::abs(row.taylor_slope - 2.0)) {
+        row.taylor_slope = order;
+      }
+    }
+  }
+
+  Problem& problem_;
+  const GradientCheckOptions& options_;
+  Simulator simulator_;
+  std::mt19937 random_;
+  double value_ = 0.0;
+  Eigen::VectorXd gradient_;
+  Eigen::VectorXd x_;
+  Trajectory trajectory_;
+  std::unique_ptr<TrajectoryPartials> partials_;
+  std::unique_ptr<TangentSweep> tangent_;
+};
+
+}  // namespace
+
+bool GradientCheckReport::passed() const {
+  return std::all_of(rows.begin(), rows.end(),
+                     [](const GradientCheckRow& row) { return row.passed; });
+}
+
+std::string GradientCheckReport::table() const {
+  std::ostringstream out;
+  out << std::left << std::setw(28) << "class" << std::right << std::setw(6) << "size"
+      << std::setw(14) << "differences" << std::setw(12) << "slope" << std::setw(14)
+      << "dot product"
+      << "  verdict\n";
+  for (const GradientCheckRow& row : rows) {
+    out << std::left << std::setw(28) << row.name << std::right << std::setw(6) << row.size
+        << std::scientific << std::setprecision(1) << std::setw(14) << row.difference_gap;
+    if (row.remainder_vanishes) {
+      out << std::setw(12) << "affine";
+    } else {
+      out << std::fixed << std::setprecision(3) << std::setw(12) << row.taylor_slope;
+    }
+    out << std::scientific << std::setprecision(1) << std::setw(14) << row.dot_gap
+        << (row.passed ? "  ok\n" : "  FAILED\n");
+  }
+  return out.str();
+}
+
+GradientCheckReport check_gradient(Problem& problem, const GradientCheckOptions& options) {
+  Prober prober(problem, options);
+  GradientCheckReport report;
+  for (const InputClass& inputs : input_classes(problem)) {
+    report.rows.push_back(prober.check(inputs));
+  }
+  return report;
+}
+
+}  // namespace hbar

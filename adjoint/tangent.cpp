@@ -1,0 +1,153 @@
+#include "hbar/adjoint/tangent.h"
+
+#include <utility>
+
+#include "hbar/solvers/block_substitution.h"
+
+namespace hbar {
+namespace {
+
+/// Adds ∂v/∂p δp at one step to its rows.
+class VariableTangent {
+ public:
+  explicit VariableTangent(Simulator& simulator)
+      : simulator_(simulator),
+        mechanism_(nominal_mechanism<double>(simulator.model())),
+        motion_(simulator.model().tree()),
+        end_effectors_(simulator.model()) {}
+
+  /// δv = ∂v/∂q δq + ∂v/∂p δp at coordinates q.
+  Eigen::MatrixXd at(const Inputs& inputs, const Eigen::VectorXd& q, const Eigen::MatrixXd& dq,
+                     const Eigen::MatrixXd& dp) {
+    const Model& model = simulator_.model();
+    const int n = model.dof();
+    const int variables = model.variable_count();
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
+    compute_motion<double>(model.tree(), mechanism_, q, none, none, motion_);
+    Eigen::MatrixXd dv_dq(variables, n);
+    end_effectors_.jacobian(motion_, dv_dq);
+    Eigen::MatrixXd out = dv_dq * dq;
+    if (dp.rows() > 0) {
+      Eigen::VectorXd by_q(n);
+      Eigen::VectorXd row(dp.rows());
+      for (int i = 0; i < variables; ++i) {
+        by_q.setZero();
+        row.setZero();
+        end_effectors_.pull_back(mechanism_, simulator_.parameters(), inputs.p, motion_,
+                                 Eigen::VectorXd::Unit(variables, i), by_q, row);
+        out.row(i) += row.transpose() * dp;
+      }
+    }
+    return out;
+  }
+
+  void set_parameters(const Eigen::VectorXd& p) {
+    apply_parameters<double>(simulator_.model(), simulator_.parameters(), p, mechanism_);
+  }
+
+ private:
+  Simulator& simulator_;
+  Mechanism<double> mechanism_;
+  Motion<double> motion_;
+  EndEffectors<double> end_effectors_;
+};
+
+/// δq̇ of a stage from δq of the stages it looks back on.
+Eigen::MatrixXd rate_tangent(const Model& model, const Trajectory& trajectory, int s,
+                             const Eigen::MatrixXd& dq, const Eigen::MatrixXd& dqdot0) {
+  const int n = model.dof();
+  if (s == 0) {
+    return dqdot0;
+  }
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, dq.cols());
+  for (const auto& entry : flat_stencil(trajectory.timeline, s).entries) {
+    out += entry.qdot * dq.middleRows(entry.stage * n, n);
+  }
+  for (const int node : nodes_with_chart_switch(trajectory, s)) {
+    const int first = model.tree().node(node).coordinates.begin;
+    out.middleRows<3>(first).setZero();
+    for (const auto& entry : flat_stencil(model, trajectory, s, node).entries) {
+      out.middleRows<3>(first) += entry.qdot * dq.middleRows<3>(entry.stage * n + first);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Directions Directions::zero(const Simulator& simulator, Eigen::Index count) {
+  const Model& model = simulator.model();
+  return {Eigen::MatrixXd::Zero(simulator.parameters().size(), count),
+          Eigen::MatrixXd::Zero(model.control_count() * simulator.options().steps, count),
+          Eigen::MatrixXd::Zero(model.dof(), count), Eigen::MatrixXd::Zero(model.dof(), count)};
+}
+
+TangentSweep::TangentSweep(Simulator& simulator, std::unique_ptr<solvers::LinearSolver> solver)
+    : simulator_(simulator),
+      linearizer_(simulator),
+      solver_(std::move(solver)),
+      owns_block_solver_(solver_ == nullptr) {}
+
+void TangentSweep::assemble(const Trajectory& trajectory) {
+  linearization_ = &linearizer_.linearize(trajectory);
+  if (analyzed_pattern_ != linearizer_.pattern_count()) {
+    if (owns_block_solver_) {
+      solver_ = solvers::make_block_substitution(linearization_->block_sizes);
+    }
+    solver_->analyze(linearization_->H.matrix());
+    analyzed_pattern_ = linearizer_.pattern_count();
+  }
+  solver_->factorize(linearization_->H.matrix());
+}
+
+Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directions& directions) {
+  assemble(trajectory);
+  const Model& model = simulator_.model();
+  const Linearization& system = *linearization_;
+  const int n = model.dof();
+  const int stages = trajectory.timeline.stage_count();
+  const int steps = trajectory.step_count();
+  Eigen::MatrixXd rhs = -(system.dg_dq0.matrix() * directions.q0);
+  rhs -= system.dg_dqdot0.matrix() * directions.qdot0;
+  rhs -= system.dg_dp * directions.p;
+  rhs -= system.dg_du * directions.u;
+  Eigen::MatrixXd dq(stages * n, directions.count());
+  dq.topRows(n) = directions.q0;
+  Eigen::MatrixXd solution(rhs.rows(), rhs.cols());
+  solver_->solve(rhs, solution);
+  dq.bottomRows(rhs.rows()) = solution;
+  Tangents out;
+  out.q.resize((steps + 1) * n, directions.count());
+  out.qdot.resize((steps + 1) * n, directions.count());
+  out.v.resize((steps + 1) * model.variable_count(), directions.count());
+  VariableTangent variables(simulator_);
+  variables.set_parameters(trajectory.inputs.p);
+  for (int k = 0; k <= steps; ++k) {
+    const int s = trajectory.timeline.step_end(k);
+    out.q.middleRows(k * n, n) = dq.middleRows(s * n, n);
+    out.qdot.middleRows(k * n, n) = rate_tangent(model, trajectory, s, dq, directions.qdot0);
+    if (model.variable_count() > 0) {
+      out.v.middleRows(k * model.variable_count(), model.variable_count()) = variables.at(
+          trajectory.inputs, trajectory.q.col(s), dq.middleRows(s * n, n), directions.p);
+    }
+  }
+  return out;
+}
+
+Eigen::VectorXd TangentSweep::adjoint_solution(const Trajectory& trajectory,
+                                               const Eigen::VectorXd& y_bar) {
+  assemble(trajectory);
+  Eigen::MatrixXd z(y_bar.size(), 1);
+  solver_->solve_transposed(y_bar, z);
+  return z.col(0);
+}
+
+double directional_derivative(const TrajectoryPartials& partials, const Tangents& tangents,
+                              const Directions& directions, Eigen::Index i) {
+  return partials.q.reshaped().dot(tangents.q.col(i)) +
+         partials.qdot.reshaped().dot(tangents.qdot.col(i)) +
+         partials.v.reshaped().dot(tangents.v.col(i)) +
+         partials.u.reshaped().dot(directions.u.col(i)) + partials.p.dot(directions.p.col(i));
+}
+
+}  // namespace hbar

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+
+#include "hbar/adjoint/linearization.h"
+#include "hbar/adjoint/objective.h"
+
+namespace hbar {
+
+/// Directions in which inputs move, one per column.
+struct Directions {
+  Eigen::MatrixXd p;      ///<                                        [parameters x count]
+  Eigen::MatrixXd u;      ///< step by step                           [controls·steps x count]
+  Eigen::MatrixXd q0;     ///<                                        [dof x count]
+  Eigen::MatrixXd qdot0;  ///<                                        [dof x count]
+
+  /// `count` directions, all zero.
+  [[nodiscard]] static Directions zero(const Simulator& simulator, Eigen::Index count);
+  [[nodiscard]] Eigen::Index count() const { return p.cols(); }
+};
+
+/// How the trajectory moves along directions: column by column, time step by time step.
+struct Tangents {
+  Eigen::MatrixXd q;     ///< rows k·dof … are step k's               [dof·(N+1) x count]
+  Eigen::MatrixXd qdot;  ///<                                         [dof·(N+1) x count]
+  Eigen::MatrixXd v;     ///< auxiliary variables                     [variables·(N+1) x count]
+};
+
+/// Forward sensitivities H̄ δq̄ = −(∂ḡ/∂p) δp − … by the matrices of Linearizer and any solver.
+///
+/// Holds its workspace for one simulator and belongs to one thread at a time.
+class TangentSweep {
+ public:
+  /// @param solver  for H̄; null means block substitution
+  explicit TangentSweep(Simulator& simulator,
+                        std::unique_ptr<solvers::LinearSolver> solver = nullptr);
+
+  /// @param trajectory  whole, of this simulator
+  /// @throws NumericalFailure if H̄ is singular or a residual is too large
+  [[nodiscard]] Tangents push_forward(const Trajectory& trajectory, const Directions& directions);
+
+  /// The gradient of (20), (21) by the same matrices and solver: H̄ᵀ z̄ = ȳ, then −z̄ᵀ ∂ḡ/∂p. Slower
+  /// than AdjointSweep, and independent of it.
+  [[nodiscard]] Eigen::VectorXd adjoint_solution(const Trajectory& trajectory,
+                                                 const Eigen::VectorXd& y_bar);
+
+  /// The system that was assembled last.
+  [[nodiscard]] const Linearization& linearization() const { return *linearization_; }
+  [[nodiscard]] const solvers::LinearSolver& solver() const { return *solver_; }
+
+ private:
+  void assemble(const Trajectory& trajectory);
+
+  Simulator& simulator_;
+  Linearizer linearizer_;
+  std::unique_ptr<solvers::LinearSolver> solver_;
+  bool owns_block_solver_ = false;
+  int analyzed_pattern_ = 0;
+  const Linearization* linearization_ = nullptr;
+};
+
+/// dΨ along one direction (column `i` of tangents and directions).
+[[nodiscard]] double directional_derivative(const TrajectoryPartials& partials,
+                                            const Tangents& tangents, const Directions& directions,
+                                            Eigen::Index i);
+
+}  // namespace hbar
