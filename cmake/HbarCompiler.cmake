@@ -78,8 +78,10 @@ function(hbar_add_floor name)
                         POSITION_INDEPENDENT_CODE ON VERSION ${PROJECT_VERSION}
                         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_compile_features(hbar_${name} PUBLIC cxx_std_20)
-  # One alignment on both sides of the interface, whatever -march each was built with.
-  target_compile_definitions(hbar_${name} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
+  # One alignment and one way to free memory on both sides of the interface, whatever -march each
+  # was built with: with AVX Eigen pads what malloc returns, without it does not, unless told.
+  target_compile_definitions(hbar_${name} PUBLIC
+    EIGEN_MAX_ALIGN_BYTES=16 EIGEN_MALLOC_ALREADY_ALIGNED=0)
   target_include_directories(hbar_${name} PUBLIC
     $<BUILD_INTERFACE:${HBAR_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(hbar_${name} PRIVATE $<BUILD_INTERFACE:hbar_flags>)

@@ -5,9 +5,10 @@
 #include <concepts>
 #include <limits>
 
-#if EIGEN_MAX_ALIGN_BYTES != 16 || EIGEN_MAX_STATIC_ALIGN_BYTES != 16
+#if EIGEN_MAX_ALIGN_BYTES != 16 || EIGEN_MAX_STATIC_ALIGN_BYTES != 16 || \
+    EIGEN_MALLOC_ALREADY_ALIGNED
 #error \
-    "hbar is built with EIGEN_MAX_ALIGN_BYTES=16; define it so for the whole program (hbar::hbar does)"
+    "compile the whole program with -DEIGEN_MAX_ALIGN_BYTES=16 -DEIGEN_MALLOC_ALREADY_ALIGNED=0, as hbar was (hbar::hbar does)"
 #endif
 
 namespace hbar {
