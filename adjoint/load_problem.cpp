@@ -1,0 +1,105 @@
+#include "hbar/adjoint/load_problem.h"
+
+#include <array>
+#include <utility>
+
+#include "hbar/adjoint/objective_terms.h"
+#include "hbar/core/error.h"
+#include "hbar/scene/build_model.h"
+#include "hbar/scene/read_xml.h"
+
+namespace hbar {
+namespace {
+
+std::string integrator_name(scene::Integrator integrator) {
+  constexpr std::array<const char*, 3> kNames = {"bdf1", "bdf2", "sdirk2"};
+  return kNames[static_cast<std::size_t>(integrator)];
+}
+
+SimulationOptions simulation_options(const scene::Description& scene, const LoadOptions& options) {
+  SimulationOptions out;
+  out.integrator = options.integrator.value_or(integrator_name(scene.options.integrator));
+  out.h = options.h.value_or(scene.options.timestep);
+  out.steps = options.steps;
+  out.newton.tol = options.newton_tol.value_or(scene.solver_options.tol);
+  out.newton.rtol = scene.solver_options.rtol.value_or(out.newton.rtol);
+  out.newton.max_iter = scene.solver_options.max_iter;
+  out.newton.max_ls = scene.solver_options.max_ls;
+  out.stop = options.stop;
+  return out;
+}
+
+ParameterSet choose_parameters(const Model& model, const LoadOptions& options) {
+  switch (options.parameters) {
+    case ParameterChoice::kMask:
+      return ParameterSet::masked(model);
+    case ParameterChoice::kAll:
+      return ParameterSet::all(model);
+    case ParameterChoice::kNone:
+      return {};
+    case ParameterChoice::kNamed:
+      return ParameterSet::named(model, options.parameter_names);
+  }
+  throw InvalidInput("load_problem: unknown choice of parameters");
+}
+
+ObjectiveChoice choose_objective(const Model& model, const LoadOptions& options) {
+  const bool has_variables = model.variable_count() > 0;
+  if (options.objective == ObjectiveChoice::kVariables && !has_variables) {
+    throw InvalidInput(
+        "objective variables: the scene has none; add an <endeffector>, or take final-position");
+  }
+  return options.objective.value_or(has_variables ? ObjectiveChoice::kVariables
+                                                  : ObjectiveChoice::kFinalPosition);
+}
+
+Objective make_objective(ObjectiveChoice choice) {
+  return Objective(choice == ObjectiveChoice::kVariables ? squared_variables()
+                                                         : squared_final_position());
+}
+
+LoadedProblem make_problem(Model model, const SimulationOptions& simulation,
+                           const LoadOptions& options) {
+  if (options.newton_tol && !(*options.newton_tol > 0.0)) {
+    throw InvalidInput(concat("Newton tolerance is ", *options.newton_tol, "; it must be > 0"));
+  }
+  const ObjectiveChoice objective = choose_objective(model, options);
+  ParameterSet parameters = choose_parameters(model, options);
+  Simulator simulator(std::move(model), std::move(parameters), simulation);
+  Inputs inputs = simulator.nominal_inputs();
+  return {{std::move(simulator), make_objective(objective), std::move(inputs)}, objective, {}, {}};
+}
+
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& path,
+                                            const scene::Scene& scene) {
+  std::vector<std::filesystem::path> files = {path};
+  for (const scene::Robot& robot : scene.description.robots) {
+    for (const scene::Link& link : robot.links) {
+      if (const auto* mesh = std::get_if<scene::MeshBody>(&link.body.shape)) {
+        files.push_back(scene.folder / mesh->filename);
+      }
+    }
+  }
+  return files;
+}
+
+}  // namespace
+
+LoadedProblem load_problem(const std::filesystem::path& path, const LoadOptions& options) {
+  scene::Scene scene = scene::read_scene(path);
+  Model model = scene::build_model(scene);
+  if (model.dof() == 0) {
+    throw InvalidInput(concat(scene.file, ": no joint has a coordinate: there is nothing to move"));
+  }
+  try {
+    LoadedProblem out =
+        make_problem(std::move(model), simulation_options(scene.description, options), options);
+    out.notices = std::move(scene.notices);
+    out.files = files_of(path, scene);
+    return out;
+  } catch (const InvalidInput& error) {
+    throw InvalidOption(error.what());
+  }
+}
+
+}  // namespace hbar
