@@ -43,10 +43,10 @@ struct Options {
 
 /// `<solver_option>`: Newton's method of each step.
 struct SolverOptions {
-  double tol = 1e-9;           ///< bound on ‖g‖₂, > 0
-  std::optional<double> rtol;  ///< bound on ‖g‖₂ relative to the forces, > 0
-  int max_iter = 100;          ///< iterations per stage, ≥ 1
-  int max_ls = 20;             ///< halvings per line search, ≥ 1
+  double tol = 1e-9;                ///< bound on ‖g‖₂, > 0
+  std::optional<double> rtol = {};  ///< bound on ‖g‖₂ relative to the forces, > 0
+  int max_iter = 100;               ///< iterations per stage, ≥ 1
+  int max_ls = 20;                  ///< halvings per line search, ≥ 1
   friend bool operator==(const SolverOptions&, const SolverOptions&) = default;
 };
 
@@ -54,7 +54,7 @@ struct SolverOptions {
 struct Ground {
   Vec3 pos = {0.0, 0.0, 0.0};     ///< a point of the plane, length  [3]
   Vec3 normal = {0.0, 0.0, 1.0};  ///< out of the ground, not zero   [3]
-  SourceLine line;
+  SourceLine line = {};
   friend bool operator==(const Ground&, const Ground&) = default;
 };
 
@@ -85,20 +85,20 @@ enum class Frame { kLocal, kWorld };
 
 /// `<joint>`.
 struct Joint {
-  std::string name;
+  std::string name = {};
   JointType type = JointType::kFixed;
   Frame frame = Frame::kLocal;
   Vec3 pos = {0.0, 0.0, 0.0};        ///< joint frame at rest, length                        [3]
   Quat quat = {1.0, 0.0, 0.0, 0.0};  ///< its axes                                           [4]
-  std::optional<Vec3> axis;          ///< revolute, prismatic; any length but 0              [3]
-  std::optional<Vec3> axis0;         ///< planar, universal                                  [3]
-  std::optional<Vec3> axis1;         ///< planar, universal; not parallel to axis0           [3]
+  std::optional<Vec3> axis = {};     ///< revolute, prismatic; any length but 0              [3]
+  std::optional<Vec3> axis0 = {};    ///< planar, universal                                  [3]
+  std::optional<Vec3> axis1 = {};    ///< planar, universal; not parallel to axis0           [3]
   double damping = 0.0;              ///< torque·time or force·time/length, ≥ 0
   double stiffness = 0.0;            ///< torque/rad or force/length, ≥ 0
-  std::vector<double> rest;          ///< rad or length                                      [dof]
-  std::optional<Vec2> lim;           ///< lower and upper of each coordinate, rad or length  [2]
+  std::vector<double> rest = {};     ///< rad or length                                      [dof]
+  std::optional<Vec2> lim = {};      ///< lower and upper of each coordinate, rad or length  [2]
   double lim_stiffness = 0.0;        ///< torque/rad or force/length, ≥ 0
-  SourceLine line;
+  SourceLine line = {};
   friend bool operator==(const Joint&, const Joint&) = default;
 };
 
@@ -110,8 +110,8 @@ struct CuboidBody {
 };
 /// A ball.
 struct SphereBody {
-  double radius = 1.0;                                           ///< length, > 0
-  std::optional<std::array<int, 2>> general_contact_resolution;  ///< points around, rings  [2]
+  double radius = 1.0;                                                ///< length, > 0
+  std::optional<std::array<int, 2>> general_contact_resolution = {};  ///< points around, rings  [2]
   friend bool operator==(const SphereBody&, const SphereBody&) = default;
 };
 /// A cylinder about z.
@@ -137,24 +137,24 @@ enum class MeshTransform { kBodyToJoint, kObjToJoint, kObjToWorld };
 
 /// A homogeneous solid bounded by the triangles of an OBJ file.
 struct MeshBody {
-  std::string filename;          ///< relative to the scene's folder
+  std::string filename = {};     ///< relative to the scene's folder
   Vec3 scale = {1.0, 1.0, 1.0};  ///< of the OBJ's coordinates, > 0  [3]
   MeshTransform transform_type = MeshTransform::kBodyToJoint;
-  std::optional<std::string> contacts;  ///< file of contact points
-  int contact_count = 64;               ///< points chosen where there is no such file, ≥ 1
+  std::optional<std::string> contacts = {};  ///< file of contact points
+  int contact_count = 64;                    ///< points chosen where there is no such file, ≥ 1
   friend bool operator==(const MeshBody&, const MeshBody&) = default;
 };
 
 /// `<visual>`: what is drawn for an abstract body.
 struct Visual {
-  std::string mesh;                  ///< OBJ file
+  std::string mesh = {};             ///< OBJ file
   Vec3 pos = {0.0, 0.0, 0.0};        ///< length  [3]
   Quat quat = {1.0, 0.0, 0.0, 0.0};  ///<         [4]
   friend bool operator==(const Visual&, const Visual&) = default;
 };
 /// `<collision>`: the contact points of an abstract body.
 struct Collision {
-  std::string contacts;              ///< file of contact points
+  std::string contacts = {};         ///< file of contact points
   Vec3 pos = {0.0, 0.0, 0.0};        ///< length  [3]
   Quat quat = {1.0, 0.0, 0.0, 0.0};  ///<         [4]
   friend bool operator==(const Collision&, const Collision&) = default;
@@ -163,11 +163,11 @@ struct Collision {
 struct AbstractBody {
   double mass = 1.0;                              ///< mass, > 0
   std::vector<double> inertia = {1.0, 1.0, 1.0};  ///< principal, or xx xy xz yy yz zz  [3 or 6]
-  std::optional<std::string> mesh;                ///< OBJ file, drawn
-  std::optional<std::string> contacts;            ///< file of contact points
+  std::optional<std::string> mesh = {};           ///< OBJ file, drawn
+  std::optional<std::string> contacts = {};       ///< file of contact points
   Vec3 scale = {1.0, 1.0, 1.0};                   ///< of mesh and contacts, > 0         [3]
-  std::optional<Visual> visual;
-  std::optional<Collision> collision;
+  std::optional<Visual> visual = {};
+  std::optional<Collision> collision = {};
   friend bool operator==(const AbstractBody&, const AbstractBody&) = default;
 };
 
@@ -177,32 +177,32 @@ using BodyShape =
 
 /// `<body>`.
 struct Body {
-  std::string name;
-  BodyShape shape;
+  std::string name = {};
+  BodyShape shape = {};
   Vec3 pos = {0.0, 0.0, 0.0};        ///< body frame in the joint frame, length  [3]
   Quat quat = {1.0, 0.0, 0.0, 0.0};  ///< its axes                               [4]
   double density = 1.0;              ///< mass/length³, > 0; 1 where it does not apply
-  std::optional<Vec4> rgba;          ///< red, green, blue, opacity              [4]
-  std::optional<std::string> texture;
-  SourceLine line;
+  std::optional<Vec4> rgba = {};     ///< red, green, blue, opacity              [4]
+  std::optional<std::string> texture = {};
+  SourceLine line = {};
   friend bool operator==(const Body&, const Body&) = default;
 };
 
 /// `<link>`: a joint and the body it carries.
 struct Link {
-  std::string name;
+  std::string name = {};
   int parent = -1;  ///< index into the robot's links, smaller than this link's; −1: the world
   int design_params = 0;  ///< sum of 1 joint and 2 body transformation, 4 contact points, 8 mass
                           ///< and inertia, 16 stiffness and damping, 32 contact scale
-  Joint joint;
-  Body body;
-  SourceLine line;
+  Joint joint = {};
+  Body body = {};
+  SourceLine line = {};
   friend bool operator==(const Link&, const Link&) = default;
 };
 
 /// `<robot>`: links in file order.
 struct Robot {
-  std::vector<Link> links;
+  std::vector<Link> links = {};
   friend bool operator==(const Robot&, const Robot&) = default;
 };
 
@@ -212,13 +212,13 @@ enum class Control { kForce, kPosition };
 
 /// `<motor>`: one control per coordinate of its joint.
 struct Motor {
-  std::string joint;
+  std::string joint = {};
   Control ctrl = Control::kForce;
-  std::optional<Vec2> ctrl_range;  ///< lower and upper, force or torque           [2]
-  std::optional<double> P;         ///< position motors: force per error, ≥ 0
-  double D = 0.0;                  ///< position motors: force per velocity, ≥ 0
-  bool implicit = false;           ///< position motors: the state at the end of the step
-  SourceLine line;
+  std::optional<Vec2> ctrl_range = {};  ///< lower and upper, force or torque           [2]
+  std::optional<double> P = {};         ///< position motors: force per error, ≥ 0
+  double D = 0.0;                       ///< position motors: force per velocity, ≥ 0
+  bool implicit = false;                ///< position motors: the state at the end of the step
+  SourceLine line = {};
   friend bool operator==(const Motor&, const Motor&) = default;
 };
 
@@ -237,30 +237,30 @@ enum class Reaction { kPoint, kSurface };
 /// `<ground_contact>`, `<general_primitive_contact>`, `<cuboid_cuboid_contact>`.
 struct Contact {
   ContactKind kind = ContactKind::kGround;
-  std::optional<std::string> name;
-  std::string body_a;    ///< body, general_body, body_a: the one whose points are tested
-  std::string body_b;    ///< primitive_body, body_b; empty for the ground
-  double kn = 0.0;       ///< force/length, ≥ 0
-  double kt = 0.0;       ///< force·time/length, ≥ 0
-  double mu = 0.0;       ///< ≥ 0
-  double damping = 0.0;  ///< document: force·time/length²; linear: force·time/length; ≥ 0
-  std::optional<bool> render;
+  std::optional<std::string> name = {};
+  std::string body_a = {};  ///< body, general_body, body_a: the one whose points are tested
+  std::string body_b = {};  ///< primitive_body, body_b; empty for the ground
+  double kn = 0.0;          ///< force/length, ≥ 0
+  double kt = 0.0;          ///< force·time/length, ≥ 0
+  double mu = 0.0;          ///< ≥ 0
+  double damping = 0.0;     ///< document: force·time/length²; linear: force·time/length; ≥ 0
+  std::optional<bool> render = {};
   ContactLaw law = ContactLaw::kDocument;
-  std::optional<std::string> friction;
+  std::optional<std::string> friction = {};
   Reaction reaction = Reaction::kPoint;
   bool caps = true;  ///< a cylinder's end faces count for its distance
-  SourceLine line;
+  SourceLine line = {};
   friend bool operator==(const Contact&, const Contact&) = default;
 };
 
 /// `<endeffector>`: the world position of a point fixed in a joint's frame, three variables.
 struct EndEffector {
-  std::string joint;
-  Vec3 pos = {0.0, 0.0, 0.0};    ///< in the joint's frame, length  [3]
-  std::optional<double> radius;  ///< drawn, length, > 0
-  std::optional<std::string> name;
-  std::optional<Vec4> rgba;  ///< red, green, blue, opacity  [4]
-  SourceLine line;
+  std::string joint = {};
+  Vec3 pos = {0.0, 0.0, 0.0};         ///< in the joint's frame, length  [3]
+  std::optional<double> radius = {};  ///< drawn, length, > 0
+  std::optional<std::string> name = {};
+  std::optional<Vec4> rgba = {};  ///< red, green, blue, opacity  [4]
+  SourceLine line = {};
   friend bool operator==(const EndEffector&, const EndEffector&) = default;
 };
 
@@ -275,7 +275,7 @@ struct RectArray {
 };
 /// Sensor points listed in a file.
 struct PointList {
-  std::string spec;                  ///< file of points with axes
+  std::string spec = {};             ///< file of points with axes
   Vec3 pos = {0.0, 0.0, 0.0};        ///< length  [3]
   Quat quat = {1.0, 0.0, 0.0, 0.0};  ///<         [4]
   friend bool operator==(const PointList&, const PointList&) = default;
@@ -283,15 +283,15 @@ struct PointList {
 
 /// `<tactile>`.
 struct TactileSensor {
-  std::string body;
-  std::string name;
-  std::variant<RectArray, PointList> points;  ///< in the order of the choices for its type
-  double kn = 0.0;                            ///< force/length, ≥ 0
-  double kt = 0.0;                            ///< force·time/length, ≥ 0
-  double mu = 0.0;                            ///< ≥ 0
-  double damping = 0.0;                       ///< force·time/length², ≥ 0
-  std::optional<bool> render;
-  SourceLine line;
+  std::string body = {};
+  std::string name = {};
+  std::variant<RectArray, PointList> points = {};  ///< in the order of the choices for its type
+  double kn = 0.0;                                 ///< force/length, ≥ 0
+  double kt = 0.0;                                 ///< force·time/length, ≥ 0
+  double mu = 0.0;                                 ///< ≥ 0
+  double damping = 0.0;                            ///< force·time/length², ≥ 0
+  std::optional<bool> render = {};
+  SourceLine line = {};
   friend bool operator==(const TactileSensor&, const TactileSensor&) = default;
 };
 
@@ -310,25 +310,25 @@ struct VirtualCuboid {
 /// A shape that is drawn and touches nothing.
 /// A child of `<virtual>`.
 struct VirtualShape {
-  std::optional<std::string> name;
-  std::variant<VirtualSphere, VirtualCuboid> shape;
-  Vec3 pos = {0.0, 0.0, 0.0};  ///< in the world, length       [3]
-  std::optional<Vec4> rgba;    ///< red, green, blue, opacity  [4]
+  std::optional<std::string> name = {};
+  std::variant<VirtualSphere, VirtualCuboid> shape = {};
+  Vec3 pos = {0.0, 0.0, 0.0};     ///< in the world, length       [3]
+  std::optional<Vec4> rgba = {};  ///< red, green, blue, opacity  [4]
   friend bool operator==(const VirtualShape&, const VirtualShape&) = default;
 };
 
 /// `<redmax>`: the whole file.
 struct Description {
-  std::string model;
-  Options options;
-  SolverOptions solver_options;
-  std::optional<Ground> ground;
-  std::vector<Robot> robots;
-  std::vector<Motor> motors;
-  std::vector<Contact> contacts;
-  std::vector<EndEffector> end_effectors;
-  std::vector<TactileSensor> tactile_sensors;
-  std::vector<VirtualShape> virtual_shapes;
+  std::string model = {};
+  Options options = {};
+  SolverOptions solver_options = {};
+  std::optional<Ground> ground = {};
+  std::vector<Robot> robots = {};
+  std::vector<Motor> motors = {};
+  std::vector<Contact> contacts = {};
+  std::vector<EndEffector> end_effectors = {};
+  std::vector<TactileSensor> tactile_sensors = {};
+  std::vector<VirtualShape> virtual_shapes = {};
   friend bool operator==(const Description&, const Description&) = default;
 };
 

@@ -315,8 +315,12 @@ std::vector<const tinyxml2::XMLElement*> checked_children(const tinyxml2::XMLEle
   std::map<std::string, int, std::less<>> first_lines;
   for (const tinyxml2::XMLNode* node = parent.FirstChild(); node; node = node->NextSibling()) {
     if (node->ToText() != nullptr) {
-      context.notice(node->GetLineNum(), concat("<", name, ">: the text \"",
-                                                quotable(node->Value()), "\" has no effect"));
+      std::string text;
+      for (const std::string_view word : split_words(node->Value())) {
+        text += (text.empty() ? "" : " ") + std::string(word);
+      }
+      context.notice(node->GetLineNum(),
+                     concat("<", name, ">: the text \"", quotable(text), "\" has no effect"));
     }
     const tinyxml2::XMLElement* const child = node->ToElement();
     if (child == nullptr) continue;
