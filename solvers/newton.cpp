@@ -56,7 +56,8 @@ Newton::Search Newton::search(NewtonSystem& system, const NewtonOptions& options
       system.solve(g_, simplified_);
       simplified_ = -simplified_;
       int worst = 0;
-      simplified_length_ = measure(simplified_, next_, &worst);
+      // Both corrections measured at x: else a runaway iterate would look like progress.
+      simplified_length_ = measure(simplified_, x, &worst);
       if (simplified_length_ <= std::max((1.0 - 0.25 * lambda) * length_, options.rtol)) {
         report.residual = g_.norm();
         return Search::kAccepted;
