@@ -6,6 +6,7 @@
 
 #include "hbar/core/error.h"
 #include "hbar/core/model_builder.h"
+#include "hbar/core/parameters.h"
 #include "hbar/core/stage_residual.h"
 #include "tests/support/duals.h"
 #include "tests/support/random.h"
@@ -130,7 +131,28 @@ struct State {
   return point;
 }
 
-/// ID(q, q̇, a) of the model's own numbers.                                       [dof]
+/// Values of a set's parameters away from the nominal ones, physical ones.             [set.size()]
+[[nodiscard]] inline Eigen::VectorXd random_parameters(const ParameterSet& set, Random& random) {
+  Eigen::VectorXd p = set.nominal();
+  for (int i = 0; i < set.size(); ++i) {
+    switch (set[i].kind) {
+      case ParameterKind::kJointTransform:
+      case ParameterKind::kBodyTransform:
+        p[i] += random.between(-0.8, 0.8);
+        break;
+      case ParameterKind::kMass:
+      case ParameterKind::kInertia:
+        p[i] *= random.between(0.95, 1.05);
+        break;
+      default:
+        p[i] += random.between(0.0, 0.5);
+        break;
+    }
+  }
+  return p;
+}
+
+/// ID(q, q̇, a).                                       [dof]
 template <Scalar S>
 [[nodiscard]] VectorX<S> inverse_dynamics_at(const Model& model, const Mechanism<S>& mechanism,
                                              const VectorX<S>& q, const VectorX<S>& qdot,
