@@ -35,18 +35,13 @@ BlockMatrix::BlockMatrix(int block_rows, int block_columns,
                                            pattern[static_cast<std::size_t>(c)].size());
     }
   }
-  matrix_.resize(block_rows * n, block_columns * n);
-  matrix_.reserve(counts);
-  for (int j = 0; j < block_columns; ++j) {
-    for (int c = 0; c < n; ++c) {
-      for (const int row : rows_of_column[static_cast<std::size_t>(j)]) {
-        for (const int l : pattern[static_cast<std::size_t>(c)]) {
-          matrix_.insertBackByOuterInnerUnordered(j * n + c, row * n + l) = 0.0;
-        }
+  matrix_ = zeros_with_pattern(block_rows * n, counts, [&](int column, int* rows) {
+    for (const int row : rows_of_column[static_cast<std::size_t>(column / n)]) {
+      for (const int l : pattern[static_cast<std::size_t>(column % n)]) {
+        *rows++ = row * n + l;
       }
     }
-  }
-  matrix_.makeCompressed();
+  });
 }
 
 void BlockMatrix::set_block(std::size_t index, const Eigen::Ref<const Eigen::MatrixXd>& dense) {

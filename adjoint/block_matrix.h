@@ -12,6 +12,26 @@ namespace hbar {
 /// (branch-induced sparsity), ascending.
 [[nodiscard]] std::vector<std::vector<int>> tree_pattern(const Tree& tree);
 
+/// A matrix of zeros with a given pattern.
+///
+/// @param counts  entries per column                                           [columns]
+/// @param fill    fill(column, rows) writes the row indices of a column, ascending
+template <typename Fill>
+[[nodiscard]] solvers::SparseMatrix zeros_with_pattern(Eigen::Index rows,
+                                                       const Eigen::VectorXi& counts,
+                                                       const Fill& fill) {
+  solvers::SparseMatrix matrix(rows, counts.size());
+  matrix.resizeNonZeros(counts.sum());
+  int* outer = matrix.outerIndexPtr();
+  outer[0] = 0;
+  for (Eigen::Index c = 0; c < counts.size(); ++c) {
+    outer[c + 1] = outer[c] + counts[c];
+    fill(static_cast<int>(c), matrix.innerIndexPtr() + outer[c]);
+  }
+  matrix.coeffs().setZero();
+  return matrix;
+}
+
 /// A compressed sparse column matrix made of equally sized blocks of one pattern. The pattern is
 /// laid out once; after that only values change.
 class BlockMatrix {

@@ -123,7 +123,9 @@ class Prober {
     const TrajectoryPartials partials = problem.objective.partials(values);
     partials_ = std::make_unique<TrajectoryPartials>(partials);
     value_ = problem.objective.value(values);
-    const Gradient g = AdjointSweep(simulator_).pull_back(trajectory, partials);
+    AdjointSweep sweep(simulator_);
+    const Gradient g = sweep.pull_back(trajectory, partials);
+    adjoint_norm_ = sweep.adjoint().norm();
     gradient_ = flatten(g.p, g.u, g.q0, g.qdot0);
     x_ = flatten(problem.inputs.p, problem.inputs.u, problem.inputs.q0, problem.inputs.qdot0);
     trajectory_ = trajectory;
@@ -169,18 +171,25 @@ class Prober {
     }
     class_norm = std::sqrt(class_norm);
     const double slope = gradient_.dot(d);
-    const double scale = std::max(class_norm, 1e-12 * std::abs(value_));
+    // A class that Ψ hardly depends on is measured against Ψ: differences resolve no more.
+    const double scale = std::max(class_norm, 1e-4 * std::abs(value_));
     if (scale == 0.0) {
       return;
     }
-    row.dot_gap = std::max(row.dot_gap, std::abs(slope - tangent_slope(d)) / scale);
+    row.dot_gap = std::max(row.dot_gap, dot_gap(d, slope, scale));
     differences(d, slope, scale, row);
   }
 
-  double tangent_slope(const Eigen::VectorXd& d) {
+  /// |⟨z̄, b⟩ − ⟨ȳ, H̄⁻¹ b⟩| over the larger of the two sides' norm products, b = ∂ḡ·d.
+  double dot_gap(const Eigen::VectorXd& d, double slope, double scale) {
     const Directions directions = as_directions(simulator_, problem_.inputs, d);
     const Tangents tangents = tangent_->push_forward(trajectory_, directions);
-    return directional_derivative(*partials_, tangents, directions, 0);
+    const double product = partials_->q.norm() * tangents.q.norm() +
+                           partials_->qdot.norm() * tangents.qdot.norm() +
+                           partials_->v.norm() * tangents.v.norm();
+    const double dual_product = adjoint_norm_ * tangent_->right_hand_sides().norm();
+    const double forward = directional_derivative(*partials_, tangents, directions, 0);
+    return std::abs(slope - forward) / std::max({scale, product, dual_product});
   }
 
   /// Central differences, extrapolated once, at steps from 1e-2 down: the best of them counts.
@@ -227,6 +236,7 @@ class Prober {
   Simulator simulator_;
   std::mt19937 random_;
   double value_ = 0.0;
+  double adjoint_norm_ = 0.0;
   Eigen::VectorXd gradient_;
   Eigen::VectorXd x_;
   Trajectory trajectory_;

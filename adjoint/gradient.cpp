@@ -43,6 +43,7 @@ struct AdjointSweep::Workspace {
   StepStart<double> y_start;
   Eigen::MatrixXd block;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu;
+  Eigen::MatrixXd z_bar;  // per stage
   double worst_residual = 0.0;
   int refactorized = 0;
 };
@@ -107,6 +108,7 @@ void AdjointSweep::Workspace::sweep_stage(const Trajectory& trajectory, int s, G
   const double rate = point.rate;
   y = q_bar.col(s) + rate * qdot_bar.col(s);
   solve_block(trajectory, s);
+  z_bar.col(s - 1) = z;
   // L = Ψ − Σ zᵀ g: what is left of ∂L/∂a and ∂L/∂q̇ goes to the past.
   const JointForces<double>& forces = stage.joint_forces();
   const double c = stage.c();
@@ -134,6 +136,7 @@ AdjointSweep::~AdjointSweep() = default;
 AdjointSweep::AdjointSweep(AdjointSweep&&) noexcept = default;
 AdjointSweep& AdjointSweep::operator=(AdjointSweep&&) noexcept = default;
 
+const Eigen::MatrixXd& AdjointSweep::adjoint() const { return work_->z_bar; }
 double AdjointSweep::worst_residual() const { return work_->worst_residual; }
 int AdjointSweep::refactorized() const { return work_->refactorized; }
 
@@ -145,6 +148,7 @@ Gradient AdjointSweep::pull_back(const Trajectory& trajectory, const TrajectoryP
   w.q_bar.setZero(model.dof(), timeline.stage_count());
   w.qdot_bar.setZero(model.dof(), timeline.stage_count());
   w.g.resize(model.dof());
+  w.z_bar.resize(model.dof(), timeline.stage_count() - 1);
   w.worst_residual = 0.0;
   w.refactorized = 0;
   Gradient out{0.0, partials.p, partials.u, {}, {}};

@@ -36,6 +36,9 @@ class AdjointSweep {
   [[nodiscard]] Gradient pull_back(const Trajectory& trajectory,
                                    const TrajectoryPartials& partials);
 
+  /// z̄ of the last sweep: how Ψ answers to a change of each stage's residual.
+  /// [dof x stages − 1]
+  [[nodiscard]] const Eigen::MatrixXd& adjoint() const;
   /// Largest relative residual ‖y − H_ssᵀ z‖ / (‖y‖ + …) of the last sweep's stages.
   [[nodiscard]] double worst_residual() const;
   /// How many stages of the last sweep had to be factorised anew.

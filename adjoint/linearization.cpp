@@ -43,7 +43,7 @@ struct Linearizer::Workspace {
   void lay_out_parameters(int stages);
   void lay_out_controls(const Timeline& timeline);
   void fill_stage(const Trajectory& trajectory, int s);
-  void fill_block(const Trajectory& trajectory, int s, const FlatStencil<double>& plain,
+  void fill_block(int s, const FlatStencil<double>& plain,
                   const std::vector<std::pair<int, FlatStencil<Matrix3d>>>& switched, int j);
   void fill_qdot0(const FlatStencil<double>& plain,
                   const std::vector<std::pair<int, FlatStencil<Matrix3d>>>& switched);
@@ -98,24 +98,21 @@ void Linearizer::Workspace::lay_out(const Timeline& t) {
 void Linearizer::Workspace::lay_out_parameters(int stages) {
   const int n = simulator.model().dof();
   const ParameterSet& set = simulator.parameters();
-  out.dg_dp.resize(stages * n, set.size());
   Eigen::VectorXi counts(set.size());
+  std::vector<std::size_t> block_of(static_cast<std::size_t>(set.size()));
   for (std::size_t b = 0; b < set.blocks().size(); ++b) {
-    counts.segment(set.blocks()[b].first, set.blocks()[b].size)
-        .setConstant(stages * static_cast<int>(rows_of_block[b].size()));
-  }
-  out.dg_dp.reserve(counts);
-  for (std::size_t b = 0; b < set.blocks().size(); ++b) {
-    const ParameterBlock& owner = set.blocks()[b];
-    for (int i = owner.first; i < owner.first + owner.size; ++i) {
-      for (int s = 0; s < stages; ++s) {
-        for (const int l : rows_of_block[b]) {
-          out.dg_dp.insertBackByOuterInnerUnordered(i, s * n + l) = 0.0;
-        }
-      }
+    for (int i = set.blocks()[b].first; i < set.blocks()[b].first + set.blocks()[b].size; ++i) {
+      counts[i] = stages * static_cast<int>(rows_of_block[b].size());
+      block_of[static_cast<std::size_t>(i)] = b;
     }
   }
-  out.dg_dp.makeCompressed();
+  out.dg_dp = zeros_with_pattern(stages * n, counts, [&](int i, int* rows) {
+    for (int s = 0; s < stages; ++s) {
+      for (const int l : rows_of_block[block_of[static_cast<std::size_t>(i)]]) {
+        *rows++ = s * n + l;
+      }
+    }
+  });
 }
 
 void Linearizer::Workspace::lay_out_controls(const Timeline& t) {
@@ -131,26 +128,21 @@ void Linearizer::Workspace::lay_out_controls(const Timeline& t) {
       row[static_cast<std::size_t>(first + c - range.begin)] = c;
     }
   }
-  out.dg_du.resize((t.stage_count() - 1) * n, controls * t.step_count());
   Eigen::VectorXi counts(controls * t.step_count());
   for (int k = 0; k < t.step_count(); ++k) {
     counts.segment(k * controls, controls).setConstant(t.step_end(k + 1) - t.step_end(k));
   }
-  out.dg_du.reserve(counts);
-  for (int k = 0; k < t.step_count(); ++k) {
-    for (int i = 0; i < controls; ++i) {
-      for (int s = t.step_end(k) + 1; s <= t.step_end(k + 1); ++s) {
-        out.dg_du.insertBackByOuterInnerUnordered(
-            k * controls + i, (s - 1) * n + row[static_cast<std::size_t>(i)]) = 0.0;
-      }
+  out.dg_du = zeros_with_pattern((t.stage_count() - 1) * n, counts, [&](int column, int* rows) {
+    const int k = column / controls;
+    for (int s = t.step_end(k) + 1; s <= t.step_end(k + 1); ++s) {
+      *rows++ = (s - 1) * n + row[static_cast<std::size_t>(column % controls)];
     }
-  }
-  out.dg_du.makeCompressed();
+  });
 }
 
 /// H(s, j) = δ_sj G_q + G_v w^q̇ + c M w^a − c ∂τ/∂start · w^start.
 void Linearizer::Workspace::fill_block(
-    const Trajectory&, int s, const FlatStencil<double>& plain,
+    int s, const FlatStencil<double>& plain,
     const std::vector<std::pair<int, FlatStencil<Matrix3d>>>& switched, int j) {
   const JointForces<double>& forces = stage.joint_forces();
   const double c = stage.c();
@@ -223,7 +215,7 @@ void Linearizer::Workspace::fill_stage(const Trajectory& trajectory, int s) {
   }
   std::size_t index = first_block[static_cast<std::size_t>(s)];
   for (const StencilEntry<double>& entry : plain.entries) {
-    fill_block(trajectory, s, plain, switched, entry.stage);
+    fill_block(s, plain, switched, entry.stage);
     if (entry.stage == 0) {
       out.dg_dq0.set_block(first_q0[static_cast<std::size_t>(s)], block);
       fill_qdot0(plain, switched);

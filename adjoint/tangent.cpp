@@ -107,15 +107,15 @@ Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directio
   const int n = model.dof();
   const int stages = trajectory.timeline.stage_count();
   const int steps = trajectory.step_count();
-  Eigen::MatrixXd rhs = -(system.dg_dq0.matrix() * directions.q0);
-  rhs -= system.dg_dqdot0.matrix() * directions.qdot0;
-  rhs -= system.dg_dp * directions.p;
-  rhs -= system.dg_du * directions.u;
+  rhs_ = -(system.dg_dq0.matrix() * directions.q0);
+  rhs_ -= system.dg_dqdot0.matrix() * directions.qdot0;
+  rhs_ -= system.dg_dp * directions.p;
+  rhs_ -= system.dg_du * directions.u;
   Eigen::MatrixXd dq(stages * n, directions.count());
   dq.topRows(n) = directions.q0;
-  Eigen::MatrixXd solution(rhs.rows(), rhs.cols());
-  solver_->solve(rhs, solution);
-  dq.bottomRows(rhs.rows()) = solution;
+  Eigen::MatrixXd solution(rhs_.rows(), rhs_.cols());
+  solver_->solve(rhs_, solution);
+  dq.bottomRows(rhs_.rows()) = solution;
   Tangents out;
   out.q.resize((steps + 1) * n, directions.count());
   out.qdot.resize((steps + 1) * n, directions.count());
@@ -132,14 +132,6 @@ Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directio
     }
   }
   return out;
-}
-
-Eigen::VectorXd TangentSweep::adjoint_solution(const Trajectory& trajectory,
-                                               const Eigen::VectorXd& y_bar) {
-  assemble(trajectory);
-  Eigen::MatrixXd z(y_bar.size(), 1);
-  solver_->solve_transposed(y_bar, z);
-  return z.col(0);
 }
 
 double directional_derivative(const TrajectoryPartials& partials, const Tangents& tangents,

@@ -39,13 +39,10 @@ class TangentSweep {
   /// @throws NumericalFailure if H̄ is singular or a residual is too large
   [[nodiscard]] Tangents push_forward(const Trajectory& trajectory, const Directions& directions);
 
-  /// The gradient of (20), (21) by the same matrices and solver: H̄ᵀ z̄ = ȳ, then −z̄ᵀ ∂ḡ/∂p. Slower
-  /// than AdjointSweep, and independent of it.
-  [[nodiscard]] Eigen::VectorXd adjoint_solution(const Trajectory& trajectory,
-                                                 const Eigen::VectorXd& y_bar);
-
   /// The system that was assembled last.
   [[nodiscard]] const Linearization& linearization() const { return *linearization_; }
+  /// −∂ḡ·directions of the last call: what H̄ was solved with.  [m x count]
+  [[nodiscard]] const Eigen::MatrixXd& right_hand_sides() const { return rhs_; }
   [[nodiscard]] const solvers::LinearSolver& solver() const { return *solver_; }
 
  private:
@@ -57,6 +54,7 @@ class TangentSweep {
   bool owns_block_solver_ = false;
   int analyzed_pattern_ = 0;
   const Linearization* linearization_ = nullptr;
+  Eigen::MatrixXd rhs_;
 };
 
 /// dΨ along one direction (column `i` of tangents and directions).
