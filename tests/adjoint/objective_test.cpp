@@ -1,0 +1,83 @@
+#include "hbar/adjoint/objective.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "hbar/adjoint/objective_terms.h"
+#include "hbar/core/error.h"
+#include "tests/adjoint/random_values.h"
+#include "tests/support/numerics.h"
+
+namespace hbar {
+namespace {
+
+using testing::message_of;
+
+TEST(TrajectoryPartials, StartAtZeroInTheShapeOfTheValues) {
+  const TrajectoryValues values = testing::random_values(1);
+  const TrajectoryPartials partials(values);
+  EXPECT_EQ(partials.q, Eigen::MatrixXd::Zero(4, 6));
+  EXPECT_EQ(partials.qdot, Eigen::MatrixXd::Zero(4, 6));
+  EXPECT_EQ(partials.v, Eigen::MatrixXd::Zero(6, 6));
+  EXPECT_EQ(partials.u, Eigen::MatrixXd::Zero(2, 5));
+  EXPECT_EQ(partials.p, Eigen::VectorXd::Zero(3));
+}
+
+TEST(Objective, WithoutTermsIsZero) {
+  const TrajectoryValues values = testing::random_values(2);
+  EXPECT_EQ(Objective().value(values), 0.0);
+  EXPECT_EQ(testing::flatten_values(Objective().partials(values)).norm(), 0.0);
+}
+
+TEST(Objective, IsTheSumOfItsTerms) {
+  const TrajectoryValues values = testing::random_values(3);
+  const TermPointer first = squared_variables(2.0);
+  const TermPointer second = effort(3.0);
+  Objective sum(first);
+  sum.add(second);
+  EXPECT_EQ(sum.terms().size(), 2U);
+  EXPECT_DOUBLE_EQ(sum.value(values), first->value(values) + second->value(values));
+  const Eigen::VectorXd parts = testing::flatten_values(Objective(first).partials(values)) +
+                                testing::flatten_values(Objective(second).partials(values));
+  EXPECT_EQ(testing::flatten_values(sum.partials(values)), parts);
+}
+
+TEST(Objective, NamesTheTermWhoseValueIsNotFinite) {
+  const TrajectoryValues values = testing::random_values(4);
+  Objective objective(squared_variables());
+  objective.add(user_term(
+      "mine", [](const TrajectoryValues&) { return std::numeric_limits<double>::infinity(); },
+      [](const TrajectoryValues&, TrajectoryPartials&) {}));
+  EXPECT_EQ(message_of<NumericalFailure>([&] { static_cast<void>(objective.value(values)); }),
+            "objective term 'mine' is inf");
+}
+
+TEST(Objective, NamesTheTermWhosePartialsAreNotFinite) {
+  const TrajectoryValues values = testing::random_values(5);
+  for (int part = 0; part < 5; ++part) {
+    Objective objective(squared_variables());
+    objective.add(user_term(
+        "mine", [](const TrajectoryValues&) { return 1.0; },
+        [part](const TrajectoryValues&, TrajectoryPartials& partials) {
+          const double bad = std::numeric_limits<double>::quiet_NaN();
+          Eigen::MatrixXd* const parts[] = {&partials.q, &partials.qdot, &partials.v, &partials.u};
+          (part < 4 ? (*parts[part])(0, 0) : partials.p[0]) = bad;
+        }));
+    EXPECT_EQ(message_of<NumericalFailure>([&] { static_cast<void>(objective.partials(values)); }),
+              "objective term 'mine' gave a partial that is not finite")
+        << part;
+  }
+}
+
+TEST(Objective, LetsAUsersExceptionPass) {
+  const TrajectoryValues values = testing::random_values(6);
+  const Objective objective(user_term(
+      "mine", [](const TrajectoryValues&) -> double { throw std::runtime_error("my own"); },
+      [](const TrajectoryValues&, TrajectoryPartials&) {}));
+  EXPECT_EQ(message_of<std::runtime_error>([&] { static_cast<void>(objective.value(values)); }),
+            "my own");
+}
+
+}  // namespace
+}  // namespace hbar
