@@ -1,0 +1,275 @@
+#include "arguments.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <sstream>
+
+#include "entries.h"
+#include "hbar/core/integrator.h"
+#include "hbar/core/nearest_name.h"
+#include "hbar/scene/numbers.h"
+#include "process.h"
+
+namespace hbar::tool {
+namespace {
+
+struct CommandRow {
+  Command command;
+  const char* name;
+  const char* sentence;
+};
+
+constexpr std::array<CommandRow, 4> kCommands = {{
+    {Command::kInfo, "info", "Shows a scene's links, coordinates, motors, variables, parameters."},
+    {Command::kSimulate, "simulate", "Simulates a scene and shows or writes the trajectory."},
+    {Command::kGradient, "gradient", "Simulates a scene and differentiates an objective of it."},
+    {Command::kCheck, "check", "Compares the gradient with finite differences, class by class."},
+}};
+
+/// Which commands have an option: one bit per command.
+enum : unsigned { kInInfo = 1, kInSimulate = 2, kInGradient = 4, kInCheck = 8 };
+constexpr unsigned kInRuns = kInSimulate | kInGradient | kInCheck;
+
+struct OptionRow {
+  const char* name;
+  const char* value;
+  unsigned commands;
+  const char* sentence;
+};
+
+constexpr std::array<OptionRow, 11> kOptions = {{
+    {"--steps", "N", kInRuns, "Number of time steps (100)."},
+    {"--dt", "H", kInRuns, "Time step in seconds (the scene's)."},
+    {"--integrator", "NAME", kInRuns, "bdf1, bdf2 or sdirk2 (the scene's)."},
+    {"--q0", "LIST", kInRuns, "Initial coordinates, rad or length (zeros)."},
+    {"--qdot0", "LIST", kInRuns, "Initial rates of the coordinates (zeros)."},
+    {"--controls", "FILE", kInRuns, "Controls: a row per step, a column per control (zeros)."},
+    {"--params", "SET", kInInfo | kInRuns,
+     "Design parameters: mask (the scene's design_params), all, none, or a list of names (mask)."},
+    {"--objective", "NAME", kInRuns,
+     "variables: half the sum of squared variables of all steps; final-position: half the squared "
+     "last q (variables where there are any)."},
+    {"--newton-tol", "X", kInRuns, "Newton's bound on the residual's norm (the scene's)."},
+    {"--out", "FILE", kInRuns, "Writes the results as JSON; - is standard output."},
+    {"--csv", "FILE", kInSimulate | kInGradient,
+     "Writes q, qdot and variables of every step as CSV; - is standard output."},
+}};
+
+[[noreturn]] void usage(const std::string& message) { throw ToolError(ExitCode::kUsage, message); }
+
+/// Values of the options that were given, by name.
+using Given = std::map<std::string, std::string>;
+
+std::optional<std::string> value_of(const Given& given, const std::string& name) {
+  const auto place = given.find(name);
+  return place == given.end() ? std::nullopt : std::optional(place->second);
+}
+
+std::optional<double> positive_number(const Given& given, const std::string& name) {
+  const std::optional<std::string> text = value_of(given, name);
+  if (!text) {
+    return std::nullopt;
+  }
+  std::string reason;
+  const std::optional<double> number = scene::parse_number(*text, reason);
+  if (!number) {
+    usage(fmt::format("{}: {}", name, reason));
+  }
+  if (!(*number > 0.0)) {
+    usage(fmt::format("{}: {} is not positive", name, *text));
+  }
+  return number;
+}
+
+int steps(const Given& given) {
+  const std::optional<std::string> text = value_of(given, "--steps");
+  if (!text) {
+    return LoadOptions{}.steps;
+  }
+  std::string reason;
+  const std::optional<int> number = scene::parse_integer(*text, reason);
+  if (!number) {
+    usage(fmt::format("--steps: {}", reason));
+  }
+  if (*number < 1) {
+    usage(fmt::format("--steps: {} is not at least 1", *text));
+  }
+  return *number;
+}
+
+std::optional<std::vector<double>> numbers(const Given& given, const std::string& name) {
+  const std::optional<std::string> text = value_of(given, name);
+  if (!text) {
+    return std::nullopt;
+  }
+  std::string reason;
+  std::vector<double> list = parse_numbers(*text, reason);
+  if (!reason.empty()) {
+    usage(fmt::format("{}: {}", name, reason));
+  }
+  return list;
+}
+
+std::optional<std::string> integrator(const Given& given) {
+  const std::optional<std::string> text = value_of(given, "--integrator");
+  std::vector<std::string> names;
+  for (const Integrator& row : integrators()) {
+    names.push_back(row.name);
+  }
+  if (text && std::find(names.begin(), names.end(), *text) == names.end()) {
+    usage(fmt::format("--integrator: there is no \"{}\"; {}", scene::quotable(*text),
+                      unknown_name_hint(*text, names)));
+  }
+  return text;
+}
+
+std::optional<ObjectiveChoice> objective(const Given& given) {
+  const std::optional<std::string> text = value_of(given, "--objective");
+  if (!text) {
+    return std::nullopt;
+  }
+  if (*text == "variables") {
+    return ObjectiveChoice::kVariables;
+  }
+  if (*text != "final-position") {
+    usage(fmt::format("--objective: there is no \"{}\"; {}", scene::quotable(*text),
+                      unknown_name_hint(*text, {"variables", "final-position"})));
+  }
+  return ObjectiveChoice::kFinalPosition;
+}
+
+void read_parameters(const Given& given, LoadOptions& load) {
+  const std::string text = value_of(given, "--params").value_or("mask");
+  if (text == "mask" || text == "all" || text == "none") {
+    load.parameters = text == "mask"  ? ParameterChoice::kMask
+                      : text == "all" ? ParameterChoice::kAll
+                                      : ParameterChoice::kNone;
+    return;
+  }
+  std::string reason;
+  const std::vector<std::string_view> names = split_entries(text, reason);
+  if (names.empty()) {
+    usage(fmt::format("--params: {}; give mask, all, none or names",
+                      reason.empty() ? "it is empty" : reason));
+  }
+  load.parameters = ParameterChoice::kNamed;
+  load.parameter_names.assign(names.begin(), names.end());
+}
+
+std::optional<std::string> file(const Given& given, const std::string& name) {
+  std::optional<std::string> text = value_of(given, name);
+  if (text && text->empty()) {
+    usage(fmt::format("{}: the file has no name", name));
+  }
+  return text;
+}
+
+Arguments read(Command command, std::string scene, const Given& given) {
+  Arguments out;
+  out.command = command;
+  out.scene = std::move(scene);
+  out.load.steps = steps(given);
+  out.load.h = positive_number(given, "--dt");
+  out.load.integrator = integrator(given);
+  out.load.newton_tol = positive_number(given, "--newton-tol");
+  out.load.objective = objective(given);
+  read_parameters(given, out.load);
+  out.q0 = numbers(given, "--q0");
+  out.qdot0 = numbers(given, "--qdot0");
+  out.controls = file(given, "--controls");
+  out.out = file(given, "--out");
+  out.csv = file(given, "--csv");
+  if (out.out == "-" && out.csv == "-") {
+    usage("--out and --csv cannot both go to standard output");
+  }
+  return out;
+}
+
+/// What CLI11 could not place, in this command's words.
+[[noreturn]] void explain(const CLI::App& command, const std::vector<std::string>& names,
+                          const CLI::ParseError& error) {
+  const std::string help = fmt::format(" (see: hbar {} --help)", command.get_name());
+  for (const std::string& word : command.remaining()) {
+    if (word.starts_with("-")) {
+      const std::string name = word.substr(0, word.find('='));
+      usage(fmt::format("{}: there is no option {}; {}{}", command.get_name(),
+                        scene::quotable(name), unknown_name_hint(name, names), help));
+    }
+    usage(fmt::format("{}: what is \"{}\" for? One scene is enough{}", command.get_name(),
+                      scene::quotable(word), help));
+  }
+  usage(fmt::format("{}: {}{}", command.get_name(), error.what(), help));
+}
+
+void check_command_name(int argc, const char* const* argv) {
+  std::vector<std::string> names;
+  for (const CommandRow& row : kCommands) {
+    names.emplace_back(row.name);
+  }
+  if (argc < 2) {
+    usage(fmt::format("a command is needed: {} (see: hbar --help)", fmt::join(names, ", ")));
+  }
+  const std::string name = argv[1];
+  if (name == "--help" || name == "-h" || name == "--version") {
+    return;
+  }
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    usage(fmt::format("there is no command \"{}\"; {} (see: hbar --help)", scene::quotable(name),
+                      unknown_name_hint(name, names)));
+  }
+}
+
+}  // namespace
+
+std::variant<Arguments, std::string> parse_arguments(int argc, const char* const* argv) {
+  check_command_name(argc, argv);
+  CLI::App app("Differentiable simulation of articulated rigid bodies.", "hbar");
+  app.set_version_flag("--version", "hbar " HBAR_VERSION);
+  app.footer("Lists are numbers or names separated by blanks or commas. Each command has --help.");
+  std::string scene;
+  std::array<std::map<std::string, std::string>, kCommands.size()> values;
+  std::array<CLI::App*, kCommands.size()> commands = {};
+  for (std::size_t i = 0; i < kCommands.size(); ++i) {
+    commands[i] = app.add_subcommand(kCommands[i].name, kCommands[i].sentence);
+    commands[i]->add_option("SCENE", scene, "Scene file (XML).")->required()->type_name("");
+    for (const OptionRow& row : kOptions) {
+      if ((row.commands & (1U << i)) != 0U) {
+        commands[i]->add_option(row.name, values[i][row.name], row.sentence)->type_name(row.value);
+      }
+    }
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wish) {
+    std::ostringstream text;
+    app.exit(wish, text, text);
+    return text.str();
+  } catch (const CLI::ParseError& error) {
+    for (std::size_t i = 0; i < kCommands.size(); ++i) {
+      std::vector<std::string> names;
+      for (const auto& [name, value] : values[i]) {
+        names.push_back(name);
+      }
+      if (commands[i]->parsed() || std::string_view(argv[1]) == kCommands[i].name) {
+        explain(*commands[i], names, error);
+      }
+    }
+    usage(error.what());
+  }
+  for (std::size_t i = 0; i < kCommands.size(); ++i) {
+    if (commands[i]->parsed()) {
+      Given given;
+      for (const auto& [name, value] : values[i]) {
+        if (commands[i]->count(name) > 0) {
+          given.emplace(name, value);
+        }
+      }
+      return read(kCommands[i].command, scene, given);
+    }
+  }
+  usage("a command is needed (see: hbar --help)");
+}
+
+}  // namespace hbar::tool

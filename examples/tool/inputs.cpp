@@ -1,0 +1,127 @@
+#include "inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "entries.h"
+#include "hbar/scene/numbers.h"
+#include "hbar/scene/text_file.h"
+#include "labels.h"
+#include "process.h"
+
+namespace hbar::tool {
+namespace {
+
+[[noreturn]] void bad_file(const std::string& message) {
+  throw ToolError(ExitCode::kBadScene, message);
+}
+
+std::string counted(std::size_t count, std::string_view noun, std::string_view plural) {
+  return fmt::format("{} {}", count, count == 1 ? noun : plural);
+}
+
+/// Whether a line names columns: none of its entries could be meant as a number.
+bool is_header(std::string_view line) {
+  std::string reason;
+  const std::vector<std::string_view> entries = split_entries(line, reason);
+  return !entries.empty() && std::all_of(entries.begin(), entries.end(), [](std::string_view e) {
+    std::string lower;
+    for (const char c : e) {
+      lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    const bool number = lower.starts_with("nan") || lower.starts_with("inf");
+    const bool begins = std::isalpha(static_cast<unsigned char>(e[0])) != 0 || e[0] == '_' ||
+                        e[0] == '"' || e[0] == '#';
+    return begins && !number;
+  });
+}
+
+/// Controls from a file with a row per step and a column per control.     [controls x steps]
+Eigen::MatrixXd read_controls(const std::string& path, const Model& model, int steps) {
+  const std::string text = scene::read_text_file(path);
+  const auto count = static_cast<std::size_t>(model.control_count());
+  if (count == 0) {
+    bad_file(fmt::format("{}: the scene has no motor, hence no control to set", path));
+  }
+  Eigen::MatrixXd controls(model.control_count(), steps);
+  int rows = 0;
+  bool first = true;
+  std::string_view rest = text;
+  if (rest.starts_with("\xef\xbb\xbf")) {
+    rest.remove_prefix(3);
+  }
+  for (int line_number = 1; !rest.empty(); ++line_number) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (scene::split_words(line).empty()) {
+      continue;
+    }
+    const bool header = first && is_header(line);
+    first = false;
+    if (header) {
+      continue;
+    }
+    std::string reason;
+    const std::vector<double> row = parse_numbers(line, reason);
+    if (!reason.empty()) {
+      bad_file(fmt::format("{}:{}: {}", path, line_number, reason));
+    }
+    if (row.size() != count) {
+      bad_file(fmt::format("{}:{}: {}; one per control is needed: {}", path, line_number,
+                           counted(row.size(), "entry", "entries"),
+                           fmt::join(control_names(model), ", ")));
+    }
+    if (rows < steps) {
+      controls.col(rows) =
+          Eigen::Map<const Eigen::VectorXd>(row.data(), static_cast<Eigen::Index>(row.size()));
+    }
+    ++rows;
+  }
+  if (rows != steps) {
+    bad_file(fmt::format(
+        "{}: {}; one per step is needed: {}", path,
+        counted(static_cast<std::size_t>(rows), "row of controls", "rows of controls"), steps));
+  }
+  return controls;
+}
+
+void set_state(const std::optional<std::vector<double>>& given, std::string_view option,
+               const Model& model, Eigen::VectorXd& state) {
+  if (!given) {
+    return;
+  }
+  if (given->size() != static_cast<std::size_t>(model.dof())) {
+    throw ToolError(ExitCode::kUsage,
+                    fmt::format("{}: {}; one per coordinate is needed: {}", option,
+                                counted(given->size(), "entry", "entries"),
+                                fmt::join(coordinate_names(model), ", ")));
+  }
+  state =
+      Eigen::Map<const Eigen::VectorXd>(given->data(), static_cast<Eigen::Index>(given->size()));
+}
+
+}  // namespace
+
+LoadedProblem load(const Arguments& arguments) {
+  try {
+    LoadedProblem loaded = load_problem(arguments.scene, arguments.load);
+    Inputs& inputs = loaded.problem.inputs;
+    const Model& model = loaded.problem.simulator.model();
+    set_state(arguments.q0, "--q0", model, inputs.q0);
+    set_state(arguments.qdot0, "--qdot0", model, inputs.qdot0);
+    if (arguments.controls) {
+      inputs.u = read_controls(*arguments.controls, model, arguments.load.steps);
+      loaded.files.emplace_back(*arguments.controls);
+    }
+    return loaded;
+  } catch (const InvalidOption& error) {
+    throw ToolError(ExitCode::kUsage, error.what());
+  } catch (const InvalidInput& error) {
+    throw ToolError(ExitCode::kBadScene, error.what());
+  }
+}
+
+}  // namespace hbar::tool

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hbar/adjoint/check_gradient.h"
+#include "hbar/adjoint/gradient.h"
+#include "hbar/adjoint/load_problem.h"
+
+namespace hbar::tool {
+
+/// What a run gave: the whole of it, or the part that was reached.
+struct Results {
+  std::string status;           ///< "converged", "interrupted", "step_failed", "gradient_failed"
+  std::string message;          ///< what went wrong; empty if nothing did
+  RolloutReport report;         ///< of the simulation
+  TrajectoryValues values;      ///< of the steps done
+  std::vector<int> newton;      ///< corrections of each step                  [steps done]
+  std::optional<double> value;  ///< of the objective; of a whole trajectory only
+  std::optional<Gradient> gradient;  ///< only where it was asked for and computed
+};
+
+/// A run's results as JSON (doc/command.md), a row of numbers on a line, 17 digits each.
+/// @throws NumericalFailure if a number is not finite
+[[nodiscard]] std::string results_json(const LoadedProblem& loaded, const Results& results);
+
+/// The rows of a gradient check as JSON.
+[[nodiscard]] std::string check_json(const LoadedProblem& loaded,
+                                     const GradientCheckReport& report);
+
+/// Time, q, qdot and variables of every step as CSV with a header, 17 digits each.
+[[nodiscard]] std::string results_csv(const LoadedProblem& loaded, const Results& results);
+
+}  // namespace hbar::tool

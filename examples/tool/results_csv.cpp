@@ -1,0 +1,35 @@
+#include <fmt/format.h>
+
+#include "labels.h"
+#include "results.h"
+
+namespace hbar::tool {
+
+std::string results_csv(const LoadedProblem& loaded, const Results& results) {
+  const Model& model = loaded.problem.simulator.model();
+  const TrajectoryValues& values = results.values;
+  std::string text = "time";
+  for (const std::string& name : coordinate_names(model)) {
+    text += ",q." + name;
+  }
+  for (const std::string& name : coordinate_names(model)) {
+    text += ",qdot." + name;
+  }
+  for (const std::string& name : variable_names(model)) {
+    text += "," + name;
+  }
+  text += '\n';
+  for (Eigen::Index k = 0; k < values.q.cols(); ++k) {
+    const auto end = std::back_inserter(text);
+    fmt::format_to(end, "{:.17g}", static_cast<double>(k) * values.h);
+    for (const Eigen::MatrixXd* block : {&values.q, &values.qdot, &values.v}) {
+      for (const double entry : block->col(k)) {
+        fmt::format_to(end, ",{:.17g}", entry);
+      }
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace hbar::tool

@@ -1,0 +1,179 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "labels.h"
+#include "results.h"
+
+namespace hbar::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Writes JSON for people too: an object's members on lines of their own, lists of numbers on one.
+class Writer {
+ public:
+  std::string write(const Json& json) {
+    value(json, 0);
+    text_ += '\n';
+    return std::move(text_);
+  }
+
+ private:
+  void line(int depth) {
+    text_ += '\n';
+    text_.append(static_cast<std::size_t>(depth), ' ');
+  }
+
+  void value(const Json& json, int depth) {
+    if (json.is_object()) {
+      object(json, depth);
+    } else if (json.is_array()) {
+      array(json, depth);
+    } else if (json.is_number_float()) {
+      number(json.get<double>());
+    } else {
+      text_ += json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    }
+  }
+
+  void number(double value) {
+    if (!std::isfinite(value)) {
+      throw NumericalFailure("a result is not finite, and JSON has no number for it");
+    }
+    fmt::format_to(std::back_inserter(text_), "{:.17g}", value);
+  }
+
+  void object(const Json& json, int depth) {
+    const bool flat = depth > 1;
+    text_ += '{';
+    const char* separator = "";
+    for (const auto& [key, member] : json.items()) {
+      text_ += separator;
+      separator = flat ? ", " : ",";
+      if (!flat) {
+        line(depth + 1);
+      }
+      text_ += Json(key).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
+      value(member, depth + 1);
+    }
+    if (!flat) {
+      line(depth);
+    }
+    text_ += '}';
+  }
+
+  void array(const Json& json, int depth) {
+    const bool flat = json.empty() || !json.front().is_structured();
+    text_ += '[';
+    const char* separator = "";
+    for (const Json& entry : json) {
+      text_ += separator;
+      separator = flat ? ", " : ",";
+      if (!flat) {
+        line(depth + 1);
+      }
+      value(entry, depth + 1);
+    }
+    if (!flat) {
+      line(depth);
+    }
+    text_ += ']';
+  }
+
+  std::string text_;
+};
+
+Json list(const Eigen::Ref<const Eigen::VectorXd>& vector) {
+  Json out = Json::array();
+  for (const double entry : vector) {
+    out.push_back(entry);
+  }
+  return out;
+}
+
+/// A row per column: time runs down a file.
+Json rows(const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+  Json out = Json::array();
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    out.push_back(list(columns.col(k)));
+  }
+  return out;
+}
+
+Json gradient_json(const ParameterSet& parameters, const Eigen::VectorXd& p,
+                   const Gradient& gradient) {
+  Json by_name = Json::array();
+  for (int i = 0; i < parameters.size(); ++i) {
+    by_name.push_back(
+        {{"name", parameters[i].name}, {"value", p[i]}, {"derivative", gradient.p[i]}});
+  }
+  return {{"u", rows(gradient.u)},
+          {"q0", list(gradient.q0)},
+          {"qdot0", list(gradient.qdot0)},
+          {"p", std::move(by_name)}};
+}
+
+/// What every file says of where it comes from.
+Json header(const LoadedProblem& loaded) {
+  const Simulator& simulator = loaded.problem.simulator;
+  const Model& model = simulator.model();
+  return {{"hbar", HBAR_VERSION},
+          {"scene", loaded.files.front().string()},
+          {"model", model.name()},
+          {"units", unit_system(model)},
+          {"integrator", simulator.options().integrator},
+          {"h", simulator.options().h},
+          {"steps", simulator.options().steps},
+          {"newton_tol", simulator.options().newton.tol}};
+}
+
+std::string objective_name(const LoadedProblem& loaded) {
+  return loaded.objective == ObjectiveChoice::kVariables ? "variables" : "final-position";
+}
+
+}  // namespace
+
+std::string results_json(const LoadedProblem& loaded, const Results& results) {
+  const Model& model = loaded.problem.simulator.model();
+  const TrajectoryValues& values = results.values;
+  Json out = header(loaded);
+  out["status"] = results.status;
+  out["message"] = results.message;
+  out["steps_done"] = results.report.steps_done;
+  out["time"] = results.report.time;
+  out["smallest_h"] = results.report.smallest_h;
+  out["coordinates"] = coordinate_names(model);
+  out["controls"] = control_names(model);
+  out["variable_names"] = variable_names(model);
+  out["q"] = rows(values.q);
+  out["qdot"] = rows(values.qdot);
+  out["variables"] = rows(values.v.rightCols(values.v.cols() - 1));
+  out["newton_iterations"] = results.newton;
+  out["objective_kind"] = objective_name(loaded);
+  if (results.value) {
+    out["objective"] = *results.value;
+  }
+  if (results.gradient) {
+    out["gradient"] =
+        gradient_json(loaded.problem.simulator.parameters(), values.p, *results.gradient);
+  }
+  return Writer().write(out);
+}
+
+std::string check_json(const LoadedProblem& loaded, const GradientCheckReport& report) {
+  Json out = header(loaded);
+  out["objective_kind"] = objective_name(loaded);
+  out["passed"] = report.passed();
+  out["classes"] = Json::array();
+  for (const GradientCheckRow& row : report.rows) {
+    Json entry = {{"name", row.name}, {"size", row.size}, {"difference_gap", row.difference_gap}};
+    entry["taylor_slope"] = row.remainder_vanishes ? Json() : Json(row.taylor_slope);
+    entry["dot_gap"] = row.dot_gap;
+    entry["passed"] = row.passed;
+    out["classes"].push_back(std::move(entry));
+  }
+  return Writer().write(out);
+}
+
+}  // namespace hbar::tool

@@ -1,0 +1,134 @@
+// The hbar command when the world does not play along: files, interrupts, memory, Newton.
+
+#include <sys/stat.h>
+
+#include "tests/tool/running.h"
+
+namespace hbar::tool {
+namespace {
+
+using Failures = ToolTest;
+
+TEST_F(Failures, FilesThatCannotBeReadExitWithSix) {
+  const Outcome missing = hbar({"info", path("missing.xml")});
+  EXPECT_EQ(missing.code, 6);
+  EXPECT_EQ(missing.err.find("hbar: " + path("missing.xml")), 0U) << missing.err;
+  const Outcome folder = hbar({"info", folder_});
+  EXPECT_EQ(folder.code, 6) << folder.err;
+  const Outcome controls =
+      hbar({"simulate", scene("arm"), "--steps", "2", "--controls", path("u.csv")});
+  EXPECT_EQ(controls.code, 6) << controls.err;
+}
+
+TEST_F(Failures, OutputsThatCannotBeWrittenExitWithSix) {
+  for (const std::string& output :
+       {path("no_folder/result.json"), folder_.string(), std::string("/dev/full"),
+        std::string("/proc/hbar_result.json")}) {
+    for (const char* option : {"--out", "--csv"}) {
+      const Outcome outcome = hbar({"simulate", scene("pendulum"), "--steps", "2", option, output});
+      EXPECT_EQ(outcome.code, 6) << output;
+      EXPECT_EQ(outcome.err.find("hbar: " + output), 0U) << outcome.err;
+    }
+  }
+  EXPECT_EQ(hbar({"simulate", scene("pendulum")}, "/dev/full").code, 6);
+  EXPECT_EQ(hbar({"simulate", scene("pendulum"), "--out", "-"}, "/dev/full").code, 6);
+}
+
+TEST_F(Failures, InputsAreNeverOverwritten) {
+  const std::string text = read_file(scene("arm"));
+  const std::string file = write("arm.xml", text);
+  const std::string controls = write("u.csv", "1 2 3\n1 2 3\n");
+  std::filesystem::create_symlink(file, folder_ / "link.xml");
+  for (const std::string& output : {file, path("./arm.xml"), path("link.xml"), controls}) {
+    const Outcome outcome =
+        hbar({"simulate", file, "--steps", "2", "--controls", controls, "--out", output});
+    EXPECT_EQ(outcome.code, 6);
+    EXPECT_EQ(outcome.err, "hbar: " + output +
+                               ": is an input of this run and stays as it is; name another file "
+                               "for the results\n");
+  }
+  EXPECT_EQ(read_file(file), text);
+  EXPECT_EQ(read_file(controls), "1 2 3\n1 2 3\n");
+  EXPECT_EQ(hbar({"simulate", file, "--out", path("same"), "--csv", path("same")}).code, 2);
+}
+
+TEST_F(Failures, AFailedWriteLeavesTheOldFileAndNoTemporaryOne) {
+  if (::geteuid() == 0) {
+    GTEST_SKIP() << "root writes into read-only folders";
+  }
+  const std::string old = write("result.json", "old");
+  ::chmod(folder_.c_str(), 0555);
+  std::ofstream(folder_ / "stdout");
+  Program program("/tmp", words({"simulate", scene("pendulum"), "--out", old}));
+  EXPECT_EQ(program.wait(), 6);
+  ::chmod(folder_.c_str(), 0755);
+  EXPECT_EQ(read_file(old), "old");
+}
+
+TEST_F(Failures, AReaderThatHasGoneIsNoCrash) {
+  const std::string command = std::string("exec 2>") + path("err") + "; { " + HBAR_TOOL + " info " +
+                              scene("arm") + "; echo $? > " + path("code") + "; } | true";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  const std::string code = read_file(path("code"));
+  EXPECT_TRUE(code == "6\n" || code == "0\n") << code;  // 0: written before the reader went
+  EXPECT_EQ(read_file(path("err")), "");
+  const std::string closed =
+      std::string(HBAR_TOOL) + " info " + scene("arm") + " >&- 2>" + path("err");
+  EXPECT_EQ(WEXITSTATUS(std::system(closed.c_str())), 6);
+  EXPECT_EQ(read_file(path("err")).find("hbar: standard output: cannot be written"), 0U);
+}
+
+TEST_F(Failures, AnInterruptKeepsWhatWasReached) {
+  Program program(folder_, words({"simulate", scene("pendulum"), "--steps", "5000000", "--q0", "1",
+                                  "--out", path("result.json"), "--csv", path("q.csv")}));
+  program.interrupt();
+  EXPECT_EQ(program.wait(), 130);
+  EXPECT_EQ(program.err().find("hbar: simulation interrupted after "), 0U) << program.err();
+  const nlohmann::json r = result("result.json");
+  EXPECT_EQ(r.at("status"), "interrupted");
+  const std::size_t done = r.at("steps_done");
+  EXPECT_LT(done, 5000000U);
+  EXPECT_EQ(r.at("q").size(), done + 1);
+  EXPECT_EQ(r.at("newton_iterations").size(), done);
+  EXPECT_FALSE(r.contains("objective"));
+  EXPECT_EQ(r.at("steps"), 5000000);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "q.csv"));
+}
+
+TEST_F(Failures, TheSecondInterruptEndsAtOnce) {
+  ASSERT_EQ(::mkfifo(path("fifo").c_str(), 0600), 0);  // reading it waits for ever
+  Program program(folder_, words({"simulate", scene("arm"), "--controls", path("fifo")}));
+  program.interrupt();
+  program.interrupt();
+  EXPECT_EQ(program.wait(), 130);
+  EXPECT_EQ(program.err(), "");
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(Failures, MemoryThatDoesNotSufficeExitsWithSeven) {
+  constexpr rlim_t kBytes = 200'000'000;
+  Program program(folder_, words({"simulate", scene("pendulum"), "--steps", "20000000"}), "",
+                  kBytes);
+  EXPECT_EQ(program.wait(), 7);
+  EXPECT_EQ(program.err(), "hbar: out of memory; take fewer steps or parameters\n");
+}
+#endif
+
+TEST_F(Failures, ASimulationThatStopsIsWrittenAndExitsWithFour) {
+  std::string text = read_file(scene("double_pendulum"));
+  text.insert(text.find("<robot>"), "<solver_option max_iter=\"1\" max_ls=\"1\"/>\n");
+  text.replace(text.find("0 0 -9.81"), 9, "0 0 -1e14");
+  const std::string file = write("wild.xml", text);
+  const Outcome outcome =
+      hbar({"gradient", file, "--q0", "1 1", "--dt", "0.5", "--out", path("result.json")});
+  EXPECT_EQ(outcome.code, 4) << outcome.err;
+  EXPECT_EQ(outcome.err.find("hbar: simulation stopped at step "), 0U) << outcome.err;
+  const nlohmann::json r = result("result.json");
+  EXPECT_EQ(r.at("status"), "step_failed");
+  EXPECT_EQ("hbar: " + r.at("message").get<std::string>() + "\n", outcome.err);
+  EXPECT_EQ(r.at("q").size(), r.at("steps_done").get<std::size_t>() + 1);
+  EXPECT_FALSE(r.contains("gradient"));
+}
+
+}  // namespace
+}  // namespace hbar::tool
