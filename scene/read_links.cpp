@@ -31,9 +31,11 @@ void check_limits(const XmlElement& element, const Joint& joint) {
   if (!joint.lim || joint.type == JointType::kFixed) return;
   if ((*joint.lim)[0] <= 0.0 && (*joint.lim)[1] >= 0.0) return;
   if (joint.lim_stiffness > 0.0) {
-    element.context().notice(
-        element.line(),
-        "<joint>: the limits exclude the start configuration 0; their spring pulls it");
+    const std::string name = joint.name.empty() ? "" : concat(" name=\"", joint.name, "\"");
+    element.context().notice(element.line(),
+                             concat("<joint", name,
+                                    ">: the limits exclude the start configuration 0; their spring "
+                                    "pulls it"));
     return;
   }
   element.fail("lim", "the start configuration 0 is outside the limits",

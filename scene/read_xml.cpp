@@ -63,8 +63,8 @@ class SceneReader {
   }
 
   void notice_ground_damping(const XmlElement& element, const Contact& contact) {
-    const bool silent = contact.kind == ContactKind::kGround && contact.damping > 0.0 &&
-                        !element.has("law") && !std::exchange(damping_noticed_, true);
+    const bool silent =
+        contact.kind == ContactKind::kGround && contact.damping > 0.0 && !element.has("law");
     if (!silent) return;
     context_.notice(element.line(),
                     "<ground_contact>: damping without law is multiplied by the depth; "
@@ -90,7 +90,6 @@ class SceneReader {
 
   ReadContext& context_;
   Description& description_;
-  bool damping_noticed_ = false;
 };
 
 }  // namespace

@@ -39,10 +39,8 @@ void check_placement(const tinyxml2::XMLElement& xml, std::string_view parent,
 }  // namespace
 
 void ReadContext::notice(int line, std::string_view text) {
-  std::string whole = concat(file, ":", line, ": ", text);
-  if (std::find(notices.begin(), notices.end(), whole) == notices.end()) {
-    notices.push_back(std::move(whole));
-  }
+  if (!noticed.emplace(text).second) return;
+  notices.push_back(concat(file, ":", line, ": ", text));
 }
 
 std::string element_place(const ReadContext& context, int line, std::string_view element) {

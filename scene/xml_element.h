@@ -3,6 +3,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,7 +31,9 @@ struct ReadContext {
   /// Attributes of `<default>` blocks, by element and attribute.
   std::map<std::string, std::map<std::string, AttributeText, std::less<>>, std::less<>> defaults;
 
-  /// Adds `file:line: text` to the notices, once.
+  std::set<std::string, std::less<>> noticed = {};  ///< their texts, without where
+
+  /// Adds `file:line: text` to the notices, unless the same text is there for another line.
   void notice(int line, std::string_view text);
 };
 

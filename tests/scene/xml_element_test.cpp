@@ -37,6 +37,14 @@ TEST(XmlElement, NormalisesQuaternionsOnce) {
   EXPECT_NEAR(q[1], -std::sqrt(0.5), 1e-15);
 }
 
+TEST(XmlElement, NoticesTheSameOnce) {
+  ReadContext context{"a.xml", {}, {}};
+  context.notice(3, "odd");
+  context.notice(4, "odd");
+  context.notice(4, "even");
+  EXPECT_EQ(context.notices, (std::vector<std::string>{"a.xml:3: odd", "a.xml:4: even"}));
+}
+
 TEST(XmlElement, NoticesWhatHasNoEffect) {
   const Scene scene = read_scene_text(
       scene_with_joint("<joint type=\"fixed\" axis=\"0 0 0\" format=\"LOCAL\"/>"), "a.xml");
