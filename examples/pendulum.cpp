@@ -12,6 +12,7 @@
 //   d objective / d joint.hinge.damping:  -0.356185
 //   gradient confirmed: yes
 #include <cstdio>
+#include <utility>
 
 #include "hbar/adjoint/check_gradient.h"
 #include "hbar/adjoint/gradient.h"
