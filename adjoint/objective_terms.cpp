@@ -110,13 +110,21 @@ TermPointer terminal_state(Eigen::VectorXd q, Eigen::VectorXd qdot, double weigh
                            double weight_qdot) {
   require_weight("terminal_state", weight_q);
   require_weight("terminal_state", weight_qdot);
+  const auto check = [=](const TrajectoryValues& values) {
+    if (q.size() != values.q.rows() || qdot.size() != values.qdot.rows()) {
+      throw InvalidInput(concat("terminal_state: q has ", q.size(), " and qdot ", qdot.size(),
+                                " entries; they must have ", values.q.rows()));
+    }
+  };
   return user_term(
       "terminal_state",
       [=](const TrajectoryValues& values) {
+        check(values);
         return 0.5 * (weight_q * (values.q.rightCols<1>() - q).squaredNorm() +
                       weight_qdot * (values.qdot.rightCols<1>() - qdot).squaredNorm());
       },
       [=](const TrajectoryValues& values, TrajectoryPartials& partials) {
+        check(values);
         partials.q.rightCols<1>() += weight_q * (values.q.rightCols<1>() - q);
         partials.qdot.rightCols<1>() += weight_qdot * (values.qdot.rightCols<1>() - qdot);
       });
