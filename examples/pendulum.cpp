@@ -4,12 +4,12 @@
 //
 // prints how far the rod has swung after a second and what that distance depends on:
 //
-//   angle after 1 s: -1.105836 rad
-//   objective 1/2 angle^2: 0.611436
-//   d objective / d initial angle:        -1.157193
-//   d objective / d initial rate:          0.094637
-//   d objective / d body.rod.mass:         0.007420
-//   d objective / d joint.hinge.damping:  -0.356185
+//   angle after 1 s: -1.043647 rad
+//   objective 1/2 angle^2: 0.544599
+//   d objective / d initial angle:         1.102869
+//   d objective / d initial rate:          0.103964
+//   d objective / d body.rod.mass:        -0.051308
+//   d objective / d joint.hinge.damping:  -0.865021
 //   gradient confirmed: yes
 #include <cstdio>
 #include <utility>
