@@ -90,7 +90,7 @@ TEST_F(Usage, BadScenesAndControlsExitWithThree) {
   const std::string bad = write("bad.xml", "<redmax>\n<robot>\n<lnk/>\n</robot>\n</redmax>\n");
   const Outcome outcome = hbar({"info", bad});
   EXPECT_EQ(outcome.code, 3);
-  EXPECT_EQ(outcome.err.find("hbar: " + bad + ":3: "), 0U) << outcome.err;
+  EXPECT_EQ(outcome.err.find("hbar: bad.xml:3: "), 0U) << outcome.err;
 
   const std::string arm = scene("arm");
   const std::vector<std::pair<std::string, std::string>> files = {
@@ -124,13 +124,13 @@ TEST_F(Usage, InfoListsAllThatHasAName) {
   for (const char* part :
        {"arm: 3 coordinates, units m-kg", "links (4)", "revolute", "q2 elbow", "controls (3)", "u1",
         "position, P 40, D 4, implicit, force in [-20, 20]", "variables (3)", "hand.z",
-        "* selected: 12", "* body.forearm.mass", "joint.yaw.rotation.x", "motor.elbow.P",
+        "* selected: 12", "*  body.forearm.mass", "joint.yaw.rotation.x", "motor.elbow.P",
         "gravity.z"}) {
     EXPECT_NE(outcome.out.find(part), std::string::npos) << part << '\n' << outcome.out;
   }
   const std::string selected = hbar({"info", scene("arm"), "--params", "gravity"}).out;
   EXPECT_NE(selected.find("* selected: 3"), std::string::npos);
-  EXPECT_NE(selected.find("* gravity.z"), std::string::npos);
+  EXPECT_NE(selected.find("*  gravity.z"), std::string::npos);
 }
 
 TEST_F(Usage, NoticesOfTheSceneAppearOnceOnStandardError) {
