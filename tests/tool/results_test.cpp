@@ -115,7 +115,8 @@ TEST_F(ToolResults, ParametersAreChosenByMaskOrByName) {
     const Outcome outcome = hbar(arguments);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     std::vector<std::string> out;
-    for (const json& p : result("r.json").at("gradient").at("p")) {
+    const json r = result("r.json");
+    for (const json& p : r.at("gradient").at("p")) {
       out.push_back(p.at("name"));
     }
     return out;
