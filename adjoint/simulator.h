@@ -15,7 +15,7 @@ struct SimulationOptions {
   std::string integrator = "bdf1";  ///< a name of integrators()
   double h = 0.02;                  ///< time step, time
   int steps = 100;                  ///< N
-  solvers::NewtonOptions newton;
+  solvers::NewtonOptions newton = {};
   int max_halvings = 10;                    ///< of a step that does not converge; each is recorded
   bool keep_factors = true;                 ///< for the adjoint; dropped if they exceed max_memory
   double max_memory = 4e9;                  ///< bytes that a trajectory may take
