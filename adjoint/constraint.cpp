@@ -1,0 +1,217 @@
+#include "hbar/adjoint/constraint.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "hbar/core/error.h"
+#include "hbar/core/nearest_name.h"
+
+namespace hbar {
+namespace {
+
+using Write = std::function<void(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>)>;
+
+double number_at(const TrajectoryValues& values, const PartialPlace& place) {
+  switch (place.field) {
+    case PartialPlace::Field::kQ:
+      return values.q(place.index, place.step);
+    case PartialPlace::Field::kQdot:
+      return values.qdot(place.index, place.step);
+    case PartialPlace::Field::kV:
+      return values.v(place.index, place.step);
+    case PartialPlace::Field::kU:
+      return values.u(place.index, place.step);
+    case PartialPlace::Field::kP:
+      break;
+  }
+  return values.p[place.index];
+}
+
+/// c_row = Σ weight · number over the row's places.
+class LinearTerm final : public ConstraintTerm {
+ public:
+  LinearTerm(ConstraintRows rows, std::vector<PartialPlace> places, Eigen::VectorXd weights)
+      : ConstraintTerm(std::move(rows), std::move(places)), weights_(std::move(weights)) {}
+
+  void values(const TrajectoryValues& values, Eigen::Ref<Eigen::VectorXd> c) const override {
+    c.setZero();
+    for (std::size_t k = 0; k < places().size(); ++k) {
+      c[places()[k].row] += weights_[static_cast<Eigen::Index>(k)] * number_at(values, places()[k]);
+    }
+  }
+  void partials(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd> partials) const override {
+    partials = weights_;
+  }
+
+ private:
+  Eigen::VectorXd weights_;
+};
+
+/// A term whose row i is the number at place i.
+ConstraintPointer numbers_within(std::vector<std::string> names, std::vector<PartialPlace> places,
+                                 const std::vector<double>& lower,
+                                 const std::vector<double>& upper) {
+  const auto count = static_cast<Eigen::Index>(places.size());
+  ConstraintRows rows{std::move(names), Eigen::Map<const Eigen::VectorXd>(lower.data(), count),
+                      Eigen::Map<const Eigen::VectorXd>(upper.data(), count)};
+  return std::make_shared<LinearTerm>(std::move(rows), std::move(places),
+                                      Eigen::VectorXd::Ones(count));
+}
+
+class FunctionTerm final : public ConstraintTerm {
+ public:
+  FunctionTerm(ConstraintRows rows, std::vector<PartialPlace> places, Write values, Write partials)
+      : ConstraintTerm(std::move(rows), std::move(places)),
+        values_(std::move(values)),
+        partials_(std::move(partials)) {}
+
+  void values(const TrajectoryValues& values, Eigen::Ref<Eigen::VectorXd> c) const override {
+    values_(values, c);
+  }
+  void partials(const TrajectoryValues& values,
+                Eigen::Ref<Eigen::VectorXd> partials) const override {
+    partials_(values, partials);
+  }
+
+ private:
+  Write values_;
+  Write partials_;
+};
+
+void require_step(const char* term, int step) {
+  if (step < 0) {
+    throw InvalidInput(concat(term, ": step is ", step, "; it must be ≥ 0"));
+  }
+}
+
+int find_end_effector(const Model& model, const std::string& name) {
+  std::vector<std::string> known;
+  for (std::size_t i = 0; i < model.end_effectors().size(); ++i) {
+    if (model.end_effectors()[i].name == name) {
+      return static_cast<int>(i);
+    }
+    known.push_back(model.end_effectors()[i].name);
+  }
+  throw InvalidInput(concat("variable_at_step: the model has no end effector '", name, "'; ",
+                            unknown_name_hint(name, known)));
+}
+
+}  // namespace
+
+ConstraintTerm::ConstraintTerm(ConstraintRows rows, std::vector<PartialPlace> places)
+    : rows_(std::move(rows)), places_(std::move(places)) {
+  const Eigen::Index count = rows_.size();
+  if (rows_.upper.size() != count || static_cast<Eigen::Index>(rows_.names.size()) != count) {
+    throw InvalidInput(concat("constraint: ", rows_.names.size(), " names, ", count, " lower and ",
+                              rows_.upper.size(), " upper bounds; there must be as many of each"));
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (!(rows_.lower[i] <= rows_.upper[i])) {
+      throw InvalidInput(concat("constraint '", rows_.names[static_cast<std::size_t>(i)],
+                                "': the lower bound ", rows_.lower[i],
+                                " must not exceed the upper one, ", rows_.upper[i]));
+    }
+  }
+  for (const PartialPlace& place : places_) {
+    if (place.row < 0 || place.row >= count || place.step < 0 || place.index < 0) {
+      throw InvalidInput(concat("constraint: a place names row ", place.row, ", step ", place.step,
+                                " and index ", place.index, "; there are ", count, " rows"));
+    }
+  }
+}
+
+ConstraintPointer variable_at_step(const Model& model, const std::string& end_effector, int step,
+                                   const Eigen::Vector3d& target, double half_width) {
+  require_step("variable_at_step", step);
+  if (!target.allFinite() || !(half_width >= 0.0)) {
+    throw InvalidInput(concat("variable_at_step: target (", target.transpose(), ") ± ", half_width,
+                              "; the target must be finite and the half width ≥ 0"));
+  }
+  constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+  const int first = 3 * find_end_effector(model, end_effector);
+  std::vector<std::string> names;
+  std::vector<PartialPlace> places;
+  std::vector<double> lower;
+  std::vector<double> upper;
+  for (int k = 0; k < 3; ++k) {
+    names.push_back(
+        concat(end_effector, ".", kAxes[static_cast<std::size_t>(k)], " at step ", step));
+    places.push_back({k, PartialPlace::Field::kV, step, first + k});
+    lower.push_back(target[k] - half_width);
+    upper.push_back(target[k] + half_width);
+  }
+  return numbers_within(std::move(names), std::move(places), lower, upper);
+}
+
+ConstraintPointer joint_limits(const Model& model, const std::vector<int>& steps, double margin) {
+  if (!(margin >= 0.0)) {
+    throw InvalidInput(concat("joint_limits: margin is ", margin, "; it must be ≥ 0"));
+  }
+  std::vector<std::string> names;
+  std::vector<PartialPlace> places;
+  std::vector<double> lower;
+  std::vector<double> upper;
+  for (int i = 0; i < model.link_count(); ++i) {
+    const auto& limits = model.link(i).joint.limits;
+    if (!limits) {
+      continue;
+    }
+    const CoordinateRange range = model.coordinates_of_link(i);
+    for (int c = range.begin; c < range.end; ++c) {
+      for (const int step : steps) {
+        require_step("joint_limits", step);
+        names.push_back(concat(model.coordinate_name(c), " at step ", step));
+        places.push_back({static_cast<int>(places.size()), PartialPlace::Field::kQ, step, c});
+        lower.push_back(limits->lower + margin);
+        upper.push_back(limits->upper - margin);
+      }
+    }
+  }
+  return numbers_within(std::move(names), std::move(places), lower, upper);
+}
+
+ConstraintPointer coordinate_limits(const Model& model, int coordinate,
+                                    const std::vector<int>& steps, double lower, double upper) {
+  if (coordinate < 0 || coordinate >= model.dof()) {
+    throw InvalidInput(concat("coordinate_limits: there is no coordinate ", coordinate,
+                              "; the model has ", model.dof()));
+  }
+  std::vector<std::string> names;
+  std::vector<PartialPlace> places;
+  for (const int step : steps) {
+    require_step("coordinate_limits", step);
+    names.push_back(concat(model.coordinate_name(coordinate), " at step ", step));
+    places.push_back({static_cast<int>(places.size()), PartialPlace::Field::kQ, step, coordinate});
+  }
+  return numbers_within(std::move(names), std::move(places),
+                        std::vector<double>(steps.size(), lower),
+                        std::vector<double>(steps.size(), upper));
+}
+
+ConstraintPointer parameter_sum(const ParameterSet& set, const std::string& name,
+                                const std::vector<std::string>& names, double lower, double upper,
+                                const Eigen::VectorXd& weights) {
+  const auto count = static_cast<Eigen::Index>(names.size());
+  if (weights.size() != 0 && weights.size() != count) {
+    throw InvalidInput(concat("parameter_sum '", name, "': ", count, " parameters and ",
+                              weights.size(), " weights; there must be as many of each"));
+  }
+  std::vector<PartialPlace> places;
+  for (const std::string& parameter : names) {
+    places.push_back({0, PartialPlace::Field::kP, 0, set.find(parameter)});
+  }
+  ConstraintRows rows{
+      {name}, Eigen::VectorXd::Constant(1, lower), Eigen::VectorXd::Constant(1, upper)};
+  return std::make_shared<LinearTerm>(
+      std::move(rows), std::move(places),
+      weights.size() > 0 ? weights : Eigen::VectorXd(Eigen::VectorXd::Ones(count)));
+}
+
+ConstraintPointer user_constraint(ConstraintRows rows, std::vector<PartialPlace> places,
+                                  Write values, Write partials) {
+  return std::make_shared<FunctionTerm>(std::move(rows), std::move(places), std::move(values),
+                                        std::move(partials));
+}
+
+}  // namespace hbar

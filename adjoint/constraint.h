@@ -1,0 +1,111 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hbar/adjoint/simulator.h"
+
+namespace hbar {
+
+/// The rows of a constraint term: lower ≤ c ≤ upper; lower = upper is an equation.
+struct ConstraintRows {
+  std::vector<std::string> names;  ///< for messages                                      [rows]
+  Eigen::VectorXd lower;           ///< − infinity if there is no bound                   [rows]
+  Eigen::VectorXd upper;           ///< + infinity if there is no bound                   [rows]
+
+  [[nodiscard]] Eigen::Index size() const { return lower.size(); }
+};
+
+/// One number of TrajectoryValues that a row reads.
+struct PartialPlace {
+  /// Members of TrajectoryValues.
+  enum class Field { kQ, kQdot, kV, kU, kP };
+
+  int row = 0;              ///< of its term
+  Field field = Field::kQ;  ///< which member
+  int step = 0;             ///< column of the member; not read for kP
+  int index = 0;            ///< row of the member
+};
+
+/// Constraints on a trajectory, with exact partials. Which numbers they read never changes.
+class ConstraintTerm {
+ public:
+  ConstraintTerm(const ConstraintTerm&) = delete;
+  ConstraintTerm& operator=(const ConstraintTerm&) = delete;
+  virtual ~ConstraintTerm() = default;
+
+  [[nodiscard]] const ConstraintRows& rows() const { return rows_; }
+  /// What the rows read.
+  [[nodiscard]] const std::vector<PartialPlace>& places() const { return places_; }
+  /// Writes the rows' values c.                                                      [rows]
+  virtual void values(const TrajectoryValues& values, Eigen::Ref<Eigen::VectorXd> c) const = 0;
+  /// Writes the partial of each place's row by its number, at fixed others.        [places]
+  virtual void partials(const TrajectoryValues& values,
+                        Eigen::Ref<Eigen::VectorXd> partials) const = 0;
+
+ protected:
+  /// @throws InvalidInput if the rows' sizes differ, a lower bound exceeds an upper one, or a place
+  ///         is of no row
+  ConstraintTerm(ConstraintRows rows, std::vector<PartialPlace> places);
+
+ private:
+  ConstraintRows rows_;
+  std::vector<PartialPlace> places_;
+};
+
+using ConstraintPointer = std::shared_ptr<const ConstraintTerm>;
+
+/// The position of an end effector at the end of a step: target − half_width ≤ v ≤ target +
+/// half_width for each of x, y, z. A half width of 0 makes three equations.
+///
+/// @param end_effector  name
+/// @param step          k = 0 … N
+/// @param target        in the world, length                                          [3]
+/// @param half_width    of the box around the target, length, ≥ 0
+/// @throws InvalidInput if the model has no such end effector, or a number is not allowed
+[[nodiscard]] ConstraintPointer variable_at_step(const Model& model,
+                                                 const std::string& end_effector, int step,
+                                                 const Eigen::Vector3d& target,
+                                                 double half_width = 0.0);
+
+/// Every joint that has limits, within them at the ends of the given steps. (The simulation itself
+/// knows limits as springs at most.)
+///
+/// @param steps   each k = 0 … N
+/// @param margin  how far inside the limits to stay, rad or length, ≥ 0
+[[nodiscard]] ConstraintPointer joint_limits(const Model& model, const std::vector<int>& steps,
+                                             double margin = 0.0);
+
+/// lower ≤ q_coordinate ≤ upper at the ends of the given steps.
+///
+/// @param coordinate  index
+/// @param steps       each k = 0 … N
+[[nodiscard]] ConstraintPointer coordinate_limits(const Model& model, int coordinate,
+                                                  const std::vector<int>& steps, double lower,
+                                                  double upper);
+
+/// A weighted sum of design parameters, Σ weight p, as a total mass is.
+///
+/// @param names    of parameters in the set
+/// @param weights  one each; empty: ones
+/// @param lower    − infinity if there is none
+/// @param upper    + infinity if there is none
+/// @throws InvalidInput if the set has no such parameter, or the sizes differ
+[[nodiscard]] ConstraintPointer parameter_sum(const ParameterSet& set, const std::string& name,
+                                              const std::vector<std::string>& names, double lower,
+                                              double upper,
+                                              const Eigen::VectorXd& weights = Eigen::VectorXd());
+
+/// Rows of one's own.
+///
+/// @param places    what the rows read
+/// @param values    writes c                                                          [rows]
+/// @param partials  writes the partial of each place                                [places]
+[[nodiscard]] ConstraintPointer user_constraint(
+    ConstraintRows rows, std::vector<PartialPlace> places,
+    std::function<void(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>)> values,
+    std::function<void(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>)> partials);
+
+}  // namespace hbar

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "hbar/core/parameters.h"
+
+namespace hbar {
+
+/// What a designer may change: the variables d of a DesignMap.
+struct DesignVariables {
+  std::vector<std::string> names;  ///<                                                    [d]
+  std::vector<std::string> units;  ///< in the model's unit system                         [d]
+  Eigen::VectorXd start;           ///< where to begin, within the bounds                  [d]
+  Eigen::VectorXd lower;           ///< − infinity if there is no bound                    [d]
+  Eigen::VectorXd upper;           ///< + infinity if there is no bound                    [d]
+  Eigen::VectorXd scale;           ///< typical size > 0 of a change                       [d]
+
+  [[nodiscard]] Eigen::Index size() const { return start.size(); }
+};
+
+/// A differentiable map d ↦ p from what a designer changes to a ParameterSet's vector: one length
+/// may move a joint, a body, a mass and three moments together.
+///
+/// Evaluations are pure: any d of the right size may be asked for, in any order.
+class DesignMap {
+ public:
+  DesignMap() = default;
+  DesignMap(const DesignMap&) = delete;
+  DesignMap& operator=(const DesignMap&) = delete;
+  virtual ~DesignMap() = default;
+
+  [[nodiscard]] virtual const DesignVariables& variables() const = 0;
+  /// Size of p.
+  [[nodiscard]] virtual Eigen::Index parameter_count() const = 0;
+  /// The parameters p(d).
+  ///
+  /// @param d  design variables                                                   [d]
+  /// @returns  in the ParameterSet's order                                        [parameters]
+  [[nodiscard]] virtual Eigen::VectorXd parameters(const Eigen::VectorXd& d) const = 0;
+  /// The derivative dp/dd.
+  ///
+  /// @param d  design variables                                                   [d]
+  /// @returns  one column per design variable                               [parameters x d]
+  [[nodiscard]] virtual Eigen::MatrixXd jacobian(const Eigen::VectorXd& d) const = 0;
+};
+
+/// p itself, within the set's bounds.
+class IdentityDesignMap final : public DesignMap {
+ public:
+  explicit IdentityDesignMap(const ParameterSet& set);
+
+  [[nodiscard]] const DesignVariables& variables() const override { return variables_; }
+  [[nodiscard]] Eigen::Index parameter_count() const override { return variables_.size(); }
+  [[nodiscard]] Eigen::VectorXd parameters(const Eigen::VectorXd& d) const override { return d; }
+  [[nodiscard]] Eigen::MatrixXd jacobian(const Eigen::VectorXd& d) const override;
+
+ private:
+  DesignVariables variables_;
+};
+
+/// p with the principal moments of each body replaced by its second moments of mass
+/// s = ∫ (x², y², z²) dm, of which I = (s_y + s_z, s_x + s_z, s_x + s_y): every s > 0 is a body
+/// that exists, so that bounds on d alone keep positive moments and the triangle inequality.
+class InertiaChart final : public DesignMap {
+ public:
+  /// @param set          holds all three moments of a body, or none of them
+  /// @param least_share  lower bound of s, as a share of the body's largest nominal moment, > 0
+  /// @throws InvalidInput if only some of a body's moments are in the set, or the share is not
+  ///         positive and below 1/2
+  explicit InertiaChart(const ParameterSet& set, double least_share = 1e-3);
+
+  [[nodiscard]] const DesignVariables& variables() const override { return variables_; }
+  [[nodiscard]] Eigen::Index parameter_count() const override { return variables_.size(); }
+  [[nodiscard]] Eigen::VectorXd parameters(const Eigen::VectorXd& d) const override;
+  [[nodiscard]] Eigen::MatrixXd jacobian(const Eigen::VectorXd& d) const override;
+
+ private:
+  DesignVariables variables_;
+  std::vector<Eigen::Index> first_moments_;  // index in p of each body's I_x
+};
+
+/// How far a map's Jacobian is from its values.
+struct DesignMapCheck {
+  /// Largest |central difference − derivative| of a parameter by a variable, over the norm of that
+  /// parameter's derivatives, variables in units of their scale.
+  double gap = 0.0;
+  std::string gap_name;  ///< "parameter 3 by length"; empty if gap is 0
+  /// Order in ε of p(d + ε δ) − p(d) − ε J δ along a direction that moves every variable: 2 if J is
+  /// right; infinite if the remainder is mere rounding, as for a linear map.
+  double slope = std::numeric_limits<double>::infinity();
+};
+
+/// Compares a map's Jacobian with differences.
+///
+/// @param d  where; steps may leave the bounds by 1e-2 of the variables' scale  [d]
+/// @throws InvalidInput if d, parameters(d) or jacobian(d) has the wrong size
+[[nodiscard]] DesignMapCheck check_design_map(const DesignMap& map, const Eigen::VectorXd& d);
+
+}  // namespace hbar

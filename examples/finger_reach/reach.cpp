@@ -1,0 +1,126 @@
+#include "reach.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "hbar/adjoint/objective_terms.h"
+#include "hbar/core/dynamics.h"
+#include "hbar/core/error.h"
+#include "hbar/scene/build_model.h"
+#include "hbar/scene/read_xml.h"
+
+namespace hbar::finger_reach {
+namespace {
+
+const Eigen::Vector4d kStart(0.0, 0.4, 0.5, 0.4);  // yaw and three bends, rad
+
+/// The shares of the motors' torques that hold a posture of the nominal finger.
+Eigen::VectorXd holding_controls(const Model& model, const Eigen::VectorXd& q) {
+  const Mechanism<double> mechanism = nominal_mechanism<double>(model);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(model.dof());
+  Motion<double> motion(model.tree());
+  compute_motion<double>(model.tree(), mechanism, q, none, none, motion);
+  Dynamics<double> dynamics(model);
+  Eigen::VectorXd tau(model.dof());
+  inverse_dynamics<double>(model, mechanism, motion, dynamics, tau);
+  Eigen::VectorXd u(model.control_count());
+  for (std::size_t m = 0; m < model.motors().size(); ++m) {
+    const Motor& motor = model.motors()[m];
+    u[model.first_control(static_cast<int>(m))] =
+        tau[model.coordinates_of_link(motor.link).begin] / motor.upper;
+  }
+  return u;
+}
+
+void require_finger(const Model& model) {
+  const auto symmetric = [](const Motor& motor) {
+    return motor.kind == Motor::Kind::kForce && motor.lower == -motor.upper;
+  };
+  if (model.dof() != 4 || model.motors().size() != 4 || model.end_effectors().size() != 1 ||
+      !std::all_of(model.motors().begin(), model.motors().end(), symmetric)) {
+    throw InvalidInput(
+        "finger: the scene must have four hinges, each with a force motor of range \"-t t\", and "
+        "one end effector");
+  }
+}
+
+std::vector<std::string> weighed_bodies(const std::array<Phalanx, 3>& phalanges) {
+  std::vector<std::string> names;
+  for (const Phalanx& phalanx : phalanges) {
+    names.push_back("body." + phalanx.body + ".mass");
+  }
+  return names;
+}
+
+}  // namespace
+
+Reach make_reach(const std::filesystem::path& scene_file, int steps) {
+  if (steps < 60 || steps % 60 != 0) {
+    throw InvalidInput(concat("finger: ", steps, " steps; expected a multiple of 60"));
+  }
+  const scene::Scene scene = scene::read_scene(scene_file);
+  const Model model = scene::build_model(scene);
+  require_finger(model);
+  const std::string tip = model.end_effectors().front().name;
+  const double tip_mass = model.link(model.end_effectors().front().link).body.mass;
+  ParameterSet set = finger_parameters(model);
+
+  Reach out{phalanges(model), {}, nullptr};
+  out.targets = {{steps / 4, {0.185, 0.125, -0.100}},
+                 {steps / 2, {0.090, 0.020, -0.175}},
+                 {3 * steps / 4, {0.235, -0.130, -0.040}},
+                 {steps, {0.170, -0.035, -0.175}}};
+  std::vector<ConstraintPointer> constraints;
+  for (const Target& target : out.targets) {
+    constraints.push_back(variable_at_step(model, tip, target.step, target.position, kHalfWidth));
+  }
+  std::vector<int> sampled;
+  for (int k = steps / kBlocks; k <= steps; k += steps / kBlocks) {
+    sampled.push_back(k);
+  }
+  constraints.push_back(joint_limits(model, sampled));
+  constraints.push_back(parameter_sum(set, "total mass", weighed_bodies(out.phalanges),
+                                      -std::numeric_limits<double>::infinity(),
+                                      kMassLimit - tip_mass));
+  constraints.push_back(slenderness(out.phalanges, set, kRatio));
+
+  HeldControls controls;
+  controls.hold = steps / kBlocks;
+  controls.start = holding_controls(model, kStart);
+  controls.lower = Eigen::VectorXd::Constant(4, -1.0);
+  controls.upper = Eigen::VectorXd::Constant(4, 1.0);
+  auto map = std::make_shared<FingerMap>(out.phalanges, set);
+  SimulationOptions simulation;
+  simulation.integrator = "bdf2";
+  simulation.h = kDuration / steps;
+  simulation.steps = steps;
+  out.problem = std::make_unique<DesignProblem>(
+      DesignProblemParts{.simulator = Simulator(model, std::move(set), simulation),
+                         .map = std::move(map),
+                         .objective = Objective(effort()),
+                         .constraints = std::move(constraints),
+                         .controls = std::move(controls),
+                         .q0 = kStart,
+                         .qdot0 = {}});
+  return out;
+}
+
+solvers::IpoptOptions ipopt_options(int max_iterations) {
+  solvers::IpoptOptions options;
+  options.tolerance = 1e-4;
+  options.acceptable_tolerance = 1e-3;
+  options.max_iterations = max_iterations;
+  return options;
+}
+
+Eigen::VectorXd tip_errors(const Reach& reach, const TrajectoryValues& values) {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(reach.targets.size()));
+  for (std::size_t i = 0; i < reach.targets.size(); ++i) {
+    const Target& target = reach.targets[i];
+    out[static_cast<Eigen::Index>(i)] = (values.v.col(target.step) - target.position).norm();
+  }
+  return out;
+}
+
+}  // namespace hbar::finger_reach

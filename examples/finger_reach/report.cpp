@@ -1,0 +1,216 @@
+#include "report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace hbar::finger_reach {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json list(const Eigen::Ref<const Eigen::VectorXd>& vector) {
+  Json out = Json::array();
+  for (const double entry : vector) {
+    out.push_back(entry);
+  }
+  return out;
+}
+
+/// A violated row, worst first.
+struct Violated {
+  std::string name;
+  double amount = 0.0;
+};
+
+std::vector<Violated> violations(const Reach& reach, const Outcome& outcome, double tolerance) {
+  const solvers::NlpConstraints& limits = reach.problem->constraint_limits();
+  std::vector<Violated> out;
+  for (Eigen::Index i = 0; i < limits.lower.size(); ++i) {
+    const double c = outcome.result.c[i];
+    const double amount = std::max(limits.lower[i] - c, c - limits.upper[i]);
+    if (!(amount <= tolerance)) {
+      out.push_back({limits.names[static_cast<std::size_t>(i)], amount});
+    }
+  }
+  std::sort(out.begin(), out.end(),
+            [](const Violated& a, const Violated& b) { return a.amount > b.amount; });
+  return out;
+}
+
+double solver_time(const Outcome& outcome) {
+  const DesignProblemTimes& times = outcome.times;
+  return outcome.result.elapsed - times.simulation - times.gradient - times.jacobian;
+}
+
+void add(std::string& text, const std::string& line) { text += line + '\n'; }
+
+void add_violations(std::string& text, const Reach& reach, const Outcome& outcome) {
+  constexpr double kTolerance = 1e-6;
+  const std::vector<Violated> violated = violations(reach, outcome, kTolerance);
+  if (violated.empty()) {
+    add(text, fmt::format("constraints: all {} met, largest violation {:.1e}",
+                          outcome.result.c.size(), outcome.result.violation.amount));
+    return;
+  }
+  add(text,
+      fmt::format("constraints: {} of {} violated", violated.size(), outcome.result.c.size()));
+  for (std::size_t i = 0; i < std::min<std::size_t>(violated.size(), 10); ++i) {
+    add(text, fmt::format("  {:<28} by {:.3e}", violated[i].name, violated[i].amount));
+  }
+}
+
+}  // namespace
+
+double finger_length(const Reach& reach, const Eigen::VectorXd& x) {
+  return reach.problem->design(x).head<3>().sum();
+}
+
+double finger_mass(const Reach& reach, const Eigen::VectorXd& x) {
+  const Eigen::VectorXd d = reach.problem->design(x);
+  double mass = 0.0;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    mass += reach.phalanges[static_cast<std::size_t>(i)].density * d[i] * d[3 + i] * d[3 + i];
+  }
+  return mass;
+}
+
+std::string summary(const Reach& reach, const Outcome& outcome) {
+  const solvers::IpoptResult& result = outcome.result;
+  const DesignVariables& design = reach.problem->parts().map->variables();
+  const double length = finger_length(reach, result.x);
+  std::string text;
+  add(text, fmt::format("\n{}", result.message));
+  add(text, fmt::format("effort:      {:.6f} before, {:.6f} after {} iterations",
+                        outcome.start_objective, result.objective, result.iterations));
+  add_violations(text, reach, outcome);
+  add(text, fmt::format("{:<20} {:>10} {:>10}", "design", "before", "after"));
+  for (Eigen::Index i = 0; i < design.size(); ++i) {
+    add(text,
+        fmt::format("  {:<18} {:>7.2f} mm {:>7.2f} mm", design.names[static_cast<std::size_t>(i)],
+                    1e3 * outcome.start[i], 1e3 * result.x[i]));
+  }
+  add(text,
+      fmt::format("  {:<18} {:>7.2f} g  {:>7.2f} g", "mass of phalanges",
+                  1e3 * finger_mass(reach, outcome.start), 1e3 * finger_mass(reach, result.x)));
+  const Eigen::VectorXd errors = tip_errors(reach, outcome.values);
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    add(text, fmt::format("target {} at {:.2f} s: tip {:.3f} mm away, {:.2f} % of the finger",
+                          i + 1, reach.targets[static_cast<std::size_t>(i)].step * outcome.values.h,
+                          1e3 * errors[i], 100.0 * errors[i] / length));
+  }
+  const DesignProblemTimes& times = outcome.times;
+  add(text, fmt::format("time:        {:.2f} s: simulation {:.2f} s ({}), gradient {:.2f} s ({}), "
+                        "Jacobian {:.2f} s ({}), Ipopt {:.2f} s",
+                        result.elapsed, times.simulation, times.simulations, times.gradient,
+                        times.gradients, times.jacobian, times.jacobians, solver_time(outcome)));
+  return text;
+}
+
+std::string result_json(const Reach& reach, const Outcome& outcome) {
+  const solvers::IpoptResult& result = outcome.result;
+  const DesignVariables& design = reach.problem->parts().map->variables();
+  const SimulationOptions& simulation = reach.problem->parts().simulator.options();
+  Json out = {{"status", solvers::to_string(result.status)},
+              {"converged", result.converged()},
+              {"feasible", result.feasible},
+              {"message", result.message},
+              {"integrator", simulation.integrator},
+              {"h", simulation.h},
+              {"steps", simulation.steps},
+              {"iterations", result.iterations},
+              {"objective", {{"before", outcome.start_objective}, {"after", result.objective}}}};
+  out["violation"] = {{"largest", result.violation.amount}, {"name", result.violation.name}};
+  out["violated"] = Json::array();
+  for (const Violated& row : violations(reach, outcome, 1e-6)) {
+    out["violated"].push_back({{"name", row.name}, {"amount", row.amount}});
+  }
+  out["design"] = Json::array();
+  for (Eigen::Index i = 0; i < design.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    out["design"].push_back({{"name", design.names[k]},
+                             {"unit", design.units[k]},
+                             {"before", outcome.start[i]},
+                             {"after", result.x[i]}});
+  }
+  out["mass"] = {{"before", finger_mass(reach, outcome.start)},
+                 {"after", finger_mass(reach, result.x)}};
+  const double length = finger_length(reach, result.x);
+  const Eigen::VectorXd errors = tip_errors(reach, outcome.values);
+  out["targets"] = Json::array();
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    const Target& target = reach.targets[static_cast<std::size_t>(i)];
+    out["targets"].push_back({{"step", target.step},
+                              {"position", list(target.position)},
+                              {"error", errors[i]},
+                              {"error_per_length", errors[i] / length}});
+  }
+  out["controls"] = Json::array();
+  const Eigen::Index first = design.size();
+  for (int b = 0; b < reach.problem->block_count(); ++b) {
+    out["controls"].push_back(list(result.x.segment(first + 4 * b, 4)));
+  }
+  const DesignProblemTimes& times = outcome.times;
+  out["seconds"] = {{"total", result.elapsed},
+                    {"simulation", times.simulation},
+                    {"gradient", times.gradient},
+                    {"jacobian", times.jacobian},
+                    {"ipopt", solver_time(outcome)}};
+  return out.dump(1) + '\n';
+}
+
+std::string trajectory_csv(const Reach& reach, const TrajectoryValues& values) {
+  const Model& model = reach.problem->parts().simulator.model();
+  std::string text = "time";
+  const auto out = std::back_inserter(text);
+  for (const char* prefix : {"", "rate."}) {
+    for (int i = 0; i < model.dof(); ++i) {
+      fmt::format_to(out, ",{}{}", prefix, model.coordinate_name(i));
+    }
+  }
+  text += ",tip.x,tip.y,tip.z";
+  for (int i = 0; i < model.control_count(); ++i) {
+    fmt::format_to(out, ",control.{}", model.control_name(i));
+  }
+  for (Eigen::Index k = 0; k < values.q.cols(); ++k) {
+    fmt::format_to(out, "\n{:.17g}", static_cast<double>(k) * values.h);
+    for (const Eigen::MatrixXd* field : {&values.q, &values.qdot, &values.v}) {
+      for (const double number : field->col(k)) {
+        fmt::format_to(out, ",{:.17g}", number);
+      }
+    }
+    for (Eigen::Index i = 0; i < values.u.rows(); ++i) {
+      fmt::format_to(out, ",{}", k == 0 ? "" : fmt::format("{:.17g}", values.u(i, k - 1)));
+    }
+  }
+  return text + '\n';
+}
+
+std::string iterations_csv(const std::vector<solvers::IterationInfo>& iterations) {
+  std::string text =
+      "iteration,objective,primal_infeasibility,dual_infeasibility,mu,step_norm,alpha_primal,"
+      "trials,restoring,seconds\n";
+  for (const solvers::IterationInfo& info : iterations) {
+    fmt::format_to(std::back_inserter(text),
+                   "{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{:d},{:.3f}\n",
+                   info.iteration, info.objective, info.primal_infeasibility,
+                   info.dual_infeasibility, info.mu, info.step_norm, info.alpha_primal,
+                   info.line_search_trials, info.restoring, info.elapsed);
+  }
+  return text;
+}
+
+std::string progress_line(const solvers::IterationInfo& info) {
+  return fmt::format("{:>4}{} {:>12.6f} {:>12.3e} {:>12.3e} {:>10.2e} {:>8.2f} s", info.iteration,
+                     info.restoring ? 'r' : ' ', info.objective, info.primal_infeasibility,
+                     info.dual_infeasibility, info.step_norm, info.elapsed);
+}
+
+std::string progress_heading() {
+  return fmt::format("{:>4}  {:>12} {:>12} {:>12} {:>10} {:>10}", "iter", "effort", "violation",
+                     "optimality", "step", "time");
+}
+
+}  // namespace hbar::finger_reach
