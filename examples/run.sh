@@ -12,4 +12,4 @@ launcher=
 cmake --preset release -DHBAR_BUILD_TESTS=OFF $launcher
 cmake --build --preset release --target finger_reach
 mkdir -p results/finger_reach
-exec build/release/examples/finger_reach --out results/finger_reach "$@"
+exec build/release/examples/finger_reach/finger_reach --out results/finger_reach "$@"

@@ -108,8 +108,8 @@ Reach make_reach(const std::filesystem::path& scene_file, int steps) {
 
 solvers::IpoptOptions ipopt_options(int max_iterations) {
   solvers::IpoptOptions options;
-  options.tolerance = 1e-4;
-  options.acceptable_tolerance = 1e-3;
+  options.tolerance = 1e-6;
+  options.acceptable_tolerance = 1e-5;
   options.max_iterations = max_iterations;
   return options;
 }

@@ -23,7 +23,7 @@ struct Reach {
 };
 
 constexpr double kDuration = 3.0;    ///< s
-constexpr double kHalfWidth = 1e-3;  ///< of the box around a target, m
+constexpr double kHalfWidth = 5e-4;  ///< of the box around a target, m
 constexpr double kMassLimit = 0.12;  ///< of phalanges and tip, kg
 constexpr double kRatio = 8.0;       ///< longest phalanx per width
 constexpr int kBlocks = 30;          ///< of constant torque

@@ -1,0 +1,87 @@
+// The main example, shortened: the whole way from a scene file to an optimum.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "examples/finger_reach/reach.h"
+#include "examples/finger_reach/report.h"
+#include "hbar/core/error.h"
+#include "hbar/scene/build_model.h"
+#include "hbar/scene/read_xml.h"
+#include "hbar/solvers/gradient_check.h"
+
+namespace hbar::finger_reach {
+namespace {
+
+constexpr const char* kScene = HBAR_SOURCE_DIR "/examples/scenes/finger.xml";
+constexpr int kSteps = 60;  // of 50 ms
+
+TEST(FingerReach, MapsItsNominalSizesToTheScenesFinger) {
+  const Model model = scene::build_model(scene::read_scene(kScene));
+  const ParameterSet set = finger_parameters(model);
+  const FingerMap map(phalanges(model), set);
+  EXPECT_EQ(set.size(), 18);
+  EXPECT_LT((map.parameters(map.variables().start) - set.nominal()).norm(), 1e-15);
+}
+
+TEST(FingerReach, HasAMapWithTheRightJacobian) {
+  const Model model = scene::build_model(scene::read_scene(kScene));
+  const FingerMap map(phalanges(model), finger_parameters(model));
+  Eigen::VectorXd d = map.variables().start;
+  d.head<3>() *= 1.1;
+  d.tail<3>() *= 0.8;
+  const DesignMapCheck check = check_design_map(map, d);
+  EXPECT_LT(check.gap, 1e-6) << check.gap_name;
+  EXPECT_NEAR(check.slope, 2.0, 0.1);
+}
+
+TEST(FingerReach, HasRightGradientsAndJacobians) {
+  const Reach reach = make_reach(kScene, kSteps);
+  solvers::GradientCheckOptions options;
+  options.coordinates = false;
+  const solvers::GradientCheck check =
+      solvers::check_gradients(*reach.problem, reach.problem->variables().start, options);
+  EXPECT_LT(check.gap, 1e-6) << check.gap_name;
+  EXPECT_GT(check.slope, 1.9) << check.slope_name;
+}
+
+TEST(FingerReach, ReachesItsTargetsWithTheLeastEffort) {
+  const Reach reach = make_reach(kScene, kSteps);
+  DesignProblem& problem = *reach.problem;
+  Outcome outcome;
+  outcome.start = problem.variables().start;
+  outcome.start_objective = problem.objective(outcome.start);
+  solvers::IpoptOptions options = ipopt_options(150);
+  options.on_iteration = [&](const solvers::IterationInfo& info) {
+    outcome.iterations.push_back(info);
+    return true;
+  };
+  outcome.result = solvers::solve_with_ipopt(problem, options);
+  outcome.times = problem.times();
+  outcome.values = problem.trajectory_values(outcome.result.x);
+  EXPECT_TRUE(outcome.result.converged()) << outcome.result.message;
+  EXPECT_LT(outcome.result.iterations, 100);
+  EXPECT_LE(outcome.result.violation.amount, 1e-6) << outcome.result.violation.name;
+  EXPECT_LT(tip_errors(reach, outcome.values).maxCoeff(),
+            0.01 * finger_length(reach, outcome.result.x));
+  EXPECT_LT(outcome.result.objective, outcome.start_objective);
+
+  const std::string json = result_json(reach, outcome);
+  EXPECT_NE(json.find("\"converged\": true"), std::string::npos);
+  EXPECT_NE(summary(reach, outcome).find("target 4"), std::string::npos);
+  const std::string csv = trajectory_csv(reach, outcome.values);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), kSteps + 2);
+  const std::string rows = iterations_csv(outcome.iterations);
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), outcome.result.iterations + 2);
+}
+
+TEST(FingerReach, RefusesAnotherScene) {
+  EXPECT_THROW(static_cast<void>(make_reach(kScene, 61)), InvalidInput);
+  EXPECT_THROW(
+      static_cast<void>(make_reach(HBAR_SOURCE_DIR "/examples/scenes/pendulum.xml", kSteps)),
+      InvalidInput);
+}
+
+}  // namespace
+}  // namespace hbar::finger_reach
