@@ -22,21 +22,33 @@ class Columns {
  public:
   explicit Columns(const Tree& tree);
 
+  /// The displacements themselves, which any number of projections then share.
+  /// Allocates nothing.
+  void prepare(const Tree& tree, const Motion<S>& motion, const Dynamics<S>& dynamics);
+
+  /// One combination, after prepare.
+  ///
   /// @param jacobian  the combination, rows by residual, columns by coordinate; entries of
   ///                  unrelated branches are set to zero                       [dof x dof]
   /// Allocates nothing.
+  void project(const Tree& tree, const Motion<S>& motion, const Dynamics<S>& dynamics,
+               const JacobianWeights<S>& weights, Eigen::Ref<MatrixX<S>> jacobian) const;
+
+  /// Both: prepare, then project.
   void combine(const Tree& tree, const Motion<S>& motion, const Dynamics<S>& dynamics,
-               const JacobianWeights<S>& weights, Eigen::Ref<MatrixX<S>> jacobian);
+               const JacobianWeights<S>& weights, Eigen::Ref<MatrixX<S>> jacobian) {
+    prepare(tree, motion, dynamics);
+    project(tree, motion, dynamics, weights, jacobian);
+  }
 
  private:
-  void prepare(const Tree& tree, const Motion<S>& motion, const Dynamics<S>& dynamics,
-               const JacobianWeights<S>& weights);
-
-  // One row per coordinate, so that a run of ancestors is contiguous in each of the six (three).
-  Eigen::Matrix<S, Eigen::Dynamic, 6> J_;
-  Eigen::Matrix<S, Eigen::Dynamic, 6> psi_ddot_;
-  Eigen::Matrix<S, Eigen::Dynamic, 3> psi_dot_;  // the angular half is all that rows read
-  Matrix6X<S> ancestor_wrench_;
+  std::vector<std::vector<CoordinateRange>> below_;  // per node: its coordinates, its descendants'
+  Matrix6X<S> psi_dot_;                              // by q_c
+  Matrix6X<S> psi_ddot_;                             // by q_c
+  Matrix6X<S> psi_ddot_by_rate_;                     // by q̇_c, where Ψ̇ is J_c
+  // What rows multiply columns by, one row per coordinate, so that a run of rows is contiguous.
+  Eigen::Matrix<S, Eigen::Dynamic, 6> rows_above_;  // J_l
+  Eigen::Matrix<S, Eigen::Dynamic, 9> rows_below_;  // I^C J_l and the angular half of (B^C)ᵀ J_l
 };
 
 /// A frame that displaces what stands below it: a joint's rest frame or a body frame
@@ -49,10 +61,10 @@ struct FrameDisplacement {
 
 /// Ψ̇ and Ψ̈ of a world twist D that is carried by a node moving as `carrier`.
 template <Scalar S>
-[[nodiscard]] FrameDisplacement<S> frame_displacement(const NodeMotion<S>& carrier,
-                                                      const Vector6<S>& D) {
+[[nodiscard]] inline FrameDisplacement<S> frame_displacement(const NodeMotion<S>& carrier,
+                                                             const Vector6<S>& D) {
   const Vector6<S> psi_dot = cross_twist<S>(carrier.V, D);
-  return {psi_dot, cross_twist<S>(carrier.A, D) + cross_twist<S>(carrier.V, psi_dot)};
+  return {psi_dot, sum<S>(cross_twist<S>(carrier.A, D), cross_twist<S>(carrier.V, psi_dot))};
 }
 
 }  // namespace hbar

@@ -5,14 +5,14 @@ namespace {
 
 /// Rate of momentum of a body: F = I A + V ×* (I V).
 template <Scalar S>
-Vector6<S> momentum_rate(const SpatialInertia<S>& I, const NodeMotion<S>& motion,
-                         const Vector6<S>& momentum) {
-  return I * motion.A + cross_wrench<S>(motion.V, momentum);
+inline Vector6<S> momentum_rate(const SpatialInertia<S>& I, const NodeMotion<S>& motion,
+                                const Vector6<S>& momentum) {
+  return sum<S>(I * motion.A, cross_wrench<S>(motion.V, momentum));
 }
 
 template <Scalar S>
-SpatialInertia<S> world_inertia(const Mechanism<S>& mechanism, const NodeMotion<S>& motion,
-                                int link) {
+inline SpatialInertia<S> world_inertia(const Mechanism<S>& mechanism, const NodeMotion<S>& motion,
+                                       int link) {
   return transformed<S>({motion.R, motion.p}, mechanism.inertia[static_cast<std::size_t>(link)]);
 }
 
@@ -21,7 +21,7 @@ template <Scalar S>
 void project(const Node& node, const Motion<S>& motion, const Vector6<S>& F,
              Eigen::Ref<VectorX<S>>& tau) {
   for (int c = node.coordinates.begin; c < node.coordinates.end; ++c) {
-    tau[c] = motion.J.col(c).dot(F);
+    tau[c] = power<S>(F, motion.J.col(c));
   }
 }
 

@@ -5,27 +5,48 @@
 namespace hbar {
 namespace {
 
+/// Turns a frame about a world axis, of which `axis` are the coordinates in the
+/// frame.
+template <Scalar S>
+void turn(const Vector3<S>& world_axis, const Eigen::Vector3d& axis, const S& angle,
+          Matrix3<S>& R) {
+  using std::cos;
+  using std::sin;
+  const S c = cos(angle);
+  const Vector3<S> along = (1.0 - c) * world_axis;
+  const Vector3<S> across = sin(angle) * world_axis;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3<S> e = R.col(k);
+    R.col(k) = c * e + across.cross(e) + axis[k] * along;
+  }
+}
+
 /// A node whose motion has one constant axis: rotation or translation.
 template <Scalar S>
 void move_along_axis(const Node& node, const NodeMotion<S>& parent, const S& q, const S& qdot,
                      const S& a, NodeMotion<S>& self, Motion<S>& motion) {
   const Vector3<S> axis = self.R * node.axis.template cast<S>();
-  auto J = motion.J.col(node.coordinates.begin);
+  Vector6<S> J;
   if (node.motion == MotionKind::kRotation) {
-    self.R = self.R * axis_rotation<S>(node.axis, q);
-    J.template head<3>() = axis;
-    J.template tail<3>() = self.p.cross(axis);
+    turn<S>(axis, node.axis, q, self.R);
+    J = spatial<S>(axis, self.p.cross(axis));
   } else {
     self.p += axis * q;
-    J.template head<3>().setZero();
-    J.template tail<3>() = axis;
+    J = spatial<S>(Vector3<S>::Zero(), axis);
   }
-  const Vector6<S> rate = J * qdot;
-  self.V = parent.V + rate;
-  self.A = parent.A + J * a + cross_twist<S>(parent.V, rate);
+  motion.J.col(node.coordinates.begin) = J;
+  Vector6<S> rate;
+  Vector6<S> rate_dot;
+  for (int i = 0; i < 6; ++i) {
+    rate[i] = J[i] * qdot;
+    rate_dot[i] = J[i] * a;
+  }
+  self.V = sum<S>(parent.V, rate);
+  self.A = sum<S>(parent.A, rate_dot, cross_twist<S>(parent.V, rate));
 }
 
-/// World twist of an angular velocity given in a frame's own axes and acting at its origin.
+/// World twist of an angular velocity given in a frame's own axes and acting at
+/// its origin.
 template <Scalar S>
 Vector6<S> at_frame(const NodeMotion<S>& frame, const Vector3<S>& omega) {
   const Vector3<S> w = frame.R * omega;
@@ -83,8 +104,9 @@ void compute_motion(const Tree& tree, const Mechanism<S>& mechanism, const Vecto
     NodeMotion<S>& self = motion.nodes[static_cast<std::size_t>(i)];
     if (node.first) {
       const RigidTransform<S>& X_PJ = mechanism.X_PJ[static_cast<std::size_t>(node.link)];
-      self.R = parent.R * X_PJ.R;
-      self.p = parent.p + parent.R * X_PJ.p;
+      self.R.noalias() = parent.R * X_PJ.R;
+      self.p = parent.p;
+      self.p.noalias() += parent.R * X_PJ.p;
     } else {
       self.R = parent.R;
       self.p = parent.p;

@@ -88,8 +88,15 @@ void add_frame_gradient(const Model& model, const Mechanism<S>& mechanism, const
                         const VectorView<S>& p, const Vector6<S>& covector,
                         Eigen::Ref<VectorX<S>> grad) {
   const FrameTwists<S> twists = frame_twists<S>(model, mechanism, motion, set, block, p);
+  // The covector as torque about the frame's origin, on the axes that w is
+  // measured in, and force.
+  const Vector3<S> force = covector.template tail<3>();
+  const Vector3<S> torque = covector.template head<3>() - twists.frame.p.cross(force);
+  const Vector3<S> by_w = twists.J_w.transpose() * (twists.frame.R.transpose() * torque);
+  const Vector3<S> by_t = twists.R_parent.transpose() * force;
   for (int i = block.first; i < block.first + block.size; ++i) {
-    grad[i] += covector.dot(twists(set[i].component));
+    const int k = set[i].component;
+    grad[i] += k < 3 ? by_w[k] : by_t[k - 3];
   }
 }
 
@@ -214,7 +221,8 @@ void joint_frame_column(const StageResidual<S>& stage, int first, const Vector6<
   }
 }
 
-/// Wrench by which a body changes F of everything above it, projected on a path.
+/// Wrench by which a body changes F of everything above it, projected on a
+/// path.
 template <Scalar S>
 void path_column(const StageResidual<S>& stage, const Vector6<S>& wrench,
                  const std::vector<int>& rows, Eigen::Ref<VectorX<S>> column) {

@@ -5,11 +5,15 @@ namespace {
 
 /// G of the class comment.
 template <Scalar S>
-Vector6<S> displacement_covector(const NodeMotion<S>& carrier, const Vector6<S>& a,
-                                 const Vector3<S>& b, const Vector6<S>& W, const Vector6<S>& F) {
-  const Vector6<S> b6 = spatial<S>(b, Vector3<S>::Zero());
-  const Vector6<S> inner = cross_wrench<S>(carrier.V, a) - b6;
-  return cross_wrench<S>(carrier.V, inner) - cross_wrench<S>(carrier.A, a) - cross_wrench<S>(W, F);
+inline Vector6<S> displacement_covector(const NodeMotion<S>& carrier, const Vector6<S>& a,
+                                        const Vector3<S>& b, const Vector6<S>& W,
+                                        const Vector6<S>& F) {
+  Vector6<S> inner = cross_wrench<S>(carrier.V, a);
+  for (int i = 0; i < 3; ++i) {
+    inner[i] -= b[i];
+  }
+  return sum<S>(cross_wrench<S>(carrier.V, inner), cross_wrench<S>(-carrier.A, a),
+                cross_wrench<S>(-W, F));
 }
 
 }  // namespace
@@ -50,16 +54,19 @@ void Pullback<S>::compute(const Model& model, const Motion<S>& motion, const Dyn
     const NodeMotion<S>& parent = motion.parent_of(node);
     const Vector6<S>& W = node.parent < 0 ? at_rest : twist(node.parent);
     const BodyDynamics<S>& below = dynamics.below(i);
-    const Vector6<S> a = below.I * W + wrench_sums_[k];
-    const Vector3<S> b = below.B.transposed_times(W) + coriolis_sums_[k];
+    const Vector6<S> a = sum<S>(below.I * W, wrench_sums_[k]);
+    Vector3<S> b = below.B.transposed_times(W);
+    for (int l = 0; l < 3; ++l) {
+      b[l] += coriolis_sums_[k][l];
+    }
     const Vector6<S> G = displacement_covector<S>(parent, a, b, W, below.F);
     joint_frames_[k] = G;
     const Vector6<S> V_sum = parent.V + motion.at(i).V;
     for (int c = node.coordinates.begin; c < node.coordinates.end; ++c) {
       const Vector6<S> J = motion.J.col(c);
-      by_q[c] = G.dot(J);
-      by_qdot[c] = a.dot(cross_twist<S>(V_sum, J)) + b.dot(J.template head<3>());
-      by_a[c] = a.dot(J);
+      by_q[c] = power<S>(G, J);
+      by_qdot[c] = power<S>(a, cross_twist<S>(V_sum, J)) + b[0] * J[0] + b[1] * J[1] + b[2] * J[2];
+      by_a[c] = power<S>(a, J);
       if (node.motion == MotionKind::kExponential) {
         const ExponentialMotion<S>& extra = motion.exponential(i);
         const auto e = static_cast<std::size_t>(c - node.coordinates.begin);

@@ -20,9 +20,16 @@ struct SpatialInertia {
 
   /// Momentum I V = (angular momentum about A's origin; linear momentum).    [6]
   [[nodiscard]] Vector6<S> operator*(const Vector6<S>& V) const {
-    const Vector3<S> w = V.template head<3>();
-    const Vector3<S> u = V.template tail<3>();
-    return spatial<S>(second.trace() * w - second * w + first.cross(u), mass * u - first.cross(w));
+    const S trace = second(0, 0) + second(1, 1) + second(2, 2);
+    Vector6<S> out;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const int k = (i + 2) % 3;
+      out[i] = trace * V[i] - second(i, 0) * V[0] - second(i, 1) * V[1] - second(i, 2) * V[2] +
+               first[j] * V[3 + k] - first[k] * V[3 + j];
+      out[3 + i] = mass * V[3 + i] - first[j] * V[k] + first[k] * V[j];
+    }
+    return out;
   }
 };
 
@@ -30,8 +37,8 @@ struct SpatialInertia {
 ///
 /// @param X_AB  body frame (centre of mass, principal axes) in A
 template <Scalar S>
-[[nodiscard]] SpatialInertia<S> body_inertia(const S& mass, const Vector3<S>& moments,
-                                             const RigidTransform<S>& X_AB) {
+[[nodiscard]] inline SpatialInertia<S> body_inertia(const S& mass, const Vector3<S>& moments,
+                                                    const RigidTransform<S>& X_AB) {
   const Vector3<S> spread = Vector3<S>::Constant(0.5 * moments.sum()) - moments;
   return {mass, mass * X_AB.p,
           X_AB.R * spread.asDiagonal() * X_AB.R.transpose() + mass * X_AB.p * X_AB.p.transpose()};
@@ -39,12 +46,22 @@ template <Scalar S>
 
 /// The same mass distribution seen from A instead of B.
 template <Scalar S>
-[[nodiscard]] SpatialInertia<S> transformed(const RigidTransform<S>& X_AB,
-                                            const SpatialInertia<S>& I_B) {
+[[nodiscard]] inline SpatialInertia<S> transformed(const RigidTransform<S>& X_AB,
+                                                   const SpatialInertia<S>& I_B) {
   const Vector3<S> turned = X_AB.R * I_B.first;
-  const Matrix3<S> half = (turned + (0.5 * I_B.mass) * X_AB.p) * X_AB.p.transpose();
+  const Vector3<S> half = turned + (0.5 * I_B.mass) * X_AB.p;
   const Matrix3<S> RS = X_AB.R * I_B.second;
-  return {I_B.mass, turned + I_B.mass * X_AB.p, RS * X_AB.R.transpose() + half + half.transpose()};
+  SpatialInertia<S> I_A;
+  I_A.mass = I_B.mass;
+  I_A.first = turned + I_B.mass * X_AB.p;
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i <= j; ++i) {
+      const S entry = RS.row(i).dot(X_AB.R.row(j)) + half[i] * X_AB.p[j] + half[j] * X_AB.p[i];
+      I_A.second(i, j) = entry;
+      I_A.second(j, i) = entry;
+    }
+  }
+  return I_A;
 }
 
 /// The velocity-dependent operator of formulation §2,
@@ -66,15 +83,26 @@ struct CoriolisOperator {
 
   /// B W, a wrench.                                                            [6]
   [[nodiscard]] Vector6<S> operator*(const Vector6<S>& W) const {
-    const Vector3<S> w = W.template head<3>();
-    return spatial<S>(C * w, 2.0 * w.cross(momentum));
+    Vector6<S> out;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const int k = (i + 2) % 3;
+      out[i] = C(i, 0) * W[0] + C(i, 1) * W[1] + C(i, 2) * W[2];
+      out[3 + i] = 2.0 * (W[j] * momentum[k] - W[k] * momentum[j]);
+    }
+    return out;
   }
 
   /// Angular half of Bᵀ W; the other half is zero.                             [3]
   [[nodiscard]] Vector3<S> transposed_times(const Vector6<S>& W) const {
-    const Vector3<S> w = W.template head<3>();
-    const Vector3<S> u = W.template tail<3>();
-    return C.transpose() * w + 2.0 * momentum.cross(u);
+    Vector3<S> out;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const int k = (i + 2) % 3;
+      out[i] = C(0, i) * W[0] + C(1, i) * W[1] + C(2, i) * W[2] +
+               2.0 * (momentum[j] * W[3 + k] - momentum[k] * W[3 + j]);
+    }
+    return out;
   }
 };
 
@@ -82,17 +110,21 @@ struct CoriolisOperator {
 /// @param V         twist in the same frame
 /// @param momentum  I V
 template <Scalar S>
-[[nodiscard]] CoriolisOperator<S> coriolis_operator(const SpatialInertia<S>& I, const Vector6<S>& V,
-                                                    const Vector6<S>& momentum) {
-  const Vector3<S> w = V.template head<3>();
-  const Vector3<S> u = V.template tail<3>();
-  CoriolisOperator<S> B;
-  for (int j = 0; j < 3; ++j) {
-    B.C.col(j) = -2.0 * w.cross(Vector3<S>(I.second.col(j)));
-  }
+[[nodiscard]] inline CoriolisOperator<S> coriolis_operator(const SpatialInertia<S>& I,
+                                                           const Vector6<S>& V,
+                                                           const Vector6<S>& momentum) {
   // [h][u] = u hᵀ − (h·u) 1.
-  B.C -= 2.0 * u * I.first.transpose();
-  B.C.diagonal().array() += 2.0 * I.first.dot(u);
+  const S along = I.first[0] * V[3] + I.first[1] * V[4] + I.first[2] * V[5];
+  CoriolisOperator<S> B;
+  for (int c = 0; c < 3; ++c) {
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      const int k = (i + 2) % 3;
+      const S turned = V[j] * I.second(k, c) - V[k] * I.second(j, c);
+      B.C(i, c) = -2.0 * (turned + V[3 + i] * I.first[c]);
+    }
+    B.C(c, c) += 2.0 * along;
+  }
   B.momentum = momentum.template tail<3>();
   return B;
 }

@@ -42,12 +42,17 @@ void StageResidual<S>::linearize(const Mechanism<S>& mechanism, const StagePoint
   compute_joint_forces<S>(model_, mechanism, point.q, point.qdot, point.u, point.start,
                           joint_forces_);
   g = c_ * (g - joint_forces_.tau);
+  columns_ready_ = false;
 }
 
 template <Scalar S>
 void StageResidual<S>::jacobian(const JacobianWeights<S>& weights, Eigen::Ref<MatrixX<S>> out) {
   const JacobianWeights<S> scaled = {c_ * weights.q, c_ * weights.v, c_ * weights.a};
-  columns_.combine(model_.tree(), motion_, dynamics_, scaled, out);
+  if (!columns_ready_) {
+    columns_.prepare(model_.tree(), motion_, dynamics_);
+    columns_ready_ = true;
+  }
+  columns_.project(model_.tree(), motion_, dynamics_, scaled, out);
   out.diagonal() -= scaled.q * joint_forces_.by_q + scaled.v * joint_forces_.by_qdot;
 }
 

@@ -68,6 +68,7 @@ class StageResidual {
   Motion<S> motion_;
   Dynamics<S> dynamics_;
   Columns<S> columns_;
+  bool columns_ready_ = false;  // prepared at the last linearize
   JointForces<S> joint_forces_;
   Pullback<S> pullback_;
   VectorX<S> by_q_;
