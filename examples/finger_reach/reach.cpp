@@ -76,10 +76,10 @@ Reach make_reach(const std::filesystem::path& scene_file, int steps) {
     constraints.push_back(variable_at_step(model, tip, target.step, target.position, kHalfWidth));
   }
   std::vector<int> sampled;
-  for (int k = steps / kBlocks; k <= steps; k += steps / kBlocks) {
+  for (int k = steps / kLimitSamples; k <= steps; k += steps / kLimitSamples) {
     sampled.push_back(k);
   }
-  constraints.push_back(joint_limits(model, sampled));
+  constraints.push_back(joint_limits(model, sampled, kLimitMargin));
   constraints.push_back(parameter_sum(set, "total mass", weighed_bodies(out.phalanges),
                                       -std::numeric_limits<double>::infinity(),
                                       kMassLimit - tip_mass));
@@ -111,6 +111,7 @@ solvers::IpoptOptions ipopt_options(int max_iterations) {
   options.tolerance = 1e-6;
   options.acceptable_tolerance = 1e-5;
   options.max_iterations = max_iterations;
+  options.integer_options["limited_memory_max_history"] = 20;
   return options;
 }
 

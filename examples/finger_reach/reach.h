@@ -22,11 +22,13 @@ struct Reach {
   std::unique_ptr<DesignProblem> problem;
 };
 
-constexpr double kDuration = 3.0;    ///< s
-constexpr double kHalfWidth = 5e-4;  ///< of the box around a target, m
-constexpr double kMassLimit = 0.12;  ///< of phalanges and tip, kg
-constexpr double kRatio = 8.0;       ///< longest phalanx per width
-constexpr int kBlocks = 30;          ///< of constant torque
+constexpr double kDuration = 3.0;      ///< s
+constexpr double kHalfWidth = 5e-4;    ///< of the box around a target, m
+constexpr double kMassLimit = 0.12;    ///< of phalanges and tip, kg
+constexpr double kRatio = 8.0;         ///< longest phalanx per width
+constexpr int kBlocks = 30;            ///< of constant torque
+constexpr int kLimitSamples = 60;      ///< times at which joint limits are looked at
+constexpr double kLimitMargin = 0.01;  ///< for what happens in between, rad
 
 /// Sets up the problem: least effort ½ ∫ ‖u‖² dt, u being shares of the motors' greatest torques.
 ///

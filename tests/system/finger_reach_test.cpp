@@ -66,6 +66,13 @@ TEST(FingerReach, ReachesItsTargetsWithTheLeastEffort) {
   EXPECT_LT(tip_errors(reach, outcome.values).maxCoeff(),
             0.01 * finger_length(reach, outcome.result.x));
   EXPECT_LT(outcome.result.objective, outcome.start_objective);
+  EXPECT_LE(outcome.values.u.cwiseAbs().maxCoeff(), 1.0 + 1e-6);
+  const Model& model = problem.parts().simulator.model();
+  for (int i = 0; i < 4; ++i) {  // at every step, between the samples too
+    const JointLimits& limits = model.link(i).joint.limits.value();
+    EXPECT_GE(outcome.values.q.row(i).minCoeff(), limits.lower) << i;
+    EXPECT_LE(outcome.values.q.row(i).maxCoeff(), limits.upper) << i;
+  }
 
   const std::string json = result_json(reach, outcome);
   EXPECT_NE(json.find("\"converged\": true"), std::string::npos);
