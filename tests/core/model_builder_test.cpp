@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 #include <functional>
 
 #include "hbar/core/error.h"
@@ -232,17 +232,18 @@ TEST(ModelBuilder, RestPoseIsTheProductOfThePathsRestFrames) {
   }
 }
 
-TEST(ModelBuilder, BuildsAChainOfFiveThousandLinksInASecond) {
-  const auto start = std::chrono::steady_clock::now();
+TEST(ModelBuilder, BuildsAChainOfFiftyThousandLinksWithoutRecursion) {
+  // A call per link would need more stack than there is.
+  const std::clock_t start = std::clock();
   ModelBuilder builder("long");
-  constexpr int kLinks = 5000;
+  constexpr int kLinks = 50000;
   for (int i = 0; i < kLinks; ++i) {
     builder.add_link(i - 1, hinge(concat("j", i)), brick(concat("b", i)));
   }
   const Model model = builder.build();
   EXPECT_EQ(model.dof(), kLinks);
   EXPECT_EQ(builder.rest_pose(kLinks - 1).R, Eigen::Matrix3d::Identity());
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+  EXPECT_LT(std::clock() - start, 30 * CLOCKS_PER_SEC);
 }
 
 TEST(SolidBody, TakesItsMassFromItsShapeAndDensity) {
