@@ -1,0 +1,80 @@
+// The main example, run as a program.
+
+#include <algorithm>
+
+#include "tests/tool/running.h"
+
+namespace hbar::tool {
+namespace {
+
+class FingerReachProgram : public ToolTest {
+ protected:
+  /// Runs it with the results in a folder of its own.
+  int run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {HBAR_FINGER_REACH, "--out", results().string()});
+    Program program(folder_, arguments);
+    const int code = program.wait();
+    out_ = program.out();
+    err_ = program.err();
+    return code;
+  }
+  [[nodiscard]] std::filesystem::path results() const { return folder_ / "made/results"; }
+  [[nodiscard]] nlohmann::json result() const {
+    return nlohmann::json::parse(read_file(results() / "result.json"));
+  }
+  [[nodiscard]] long lines_of(const char* file) const {
+    const std::string text = read_file(results() / file);
+    return std::count(text.begin(), text.end(), '\n');
+  }
+
+  std::string out_;
+  std::string err_;
+};
+
+TEST_F(FingerReachProgram, ShowsItsProgressAndWritesWhatItFound) {
+  ASSERT_EQ(run({"--steps", "60"}), 0) << err_;
+  const nlohmann::json found = result();
+  EXPECT_EQ(found["status"], "optimal");
+  EXPECT_TRUE(found["feasible"]);
+  ASSERT_EQ(found["targets"].size(), 4U);
+  for (const auto& target : found["targets"]) {
+    EXPECT_LT(target["error_per_length"].get<double>(), 0.01);
+  }
+  EXPECT_LT(found["objective"]["after"].get<double>(), found["objective"]["before"].get<double>());
+  const int iterations = found["iterations"].get<int>();
+  EXPECT_EQ(lines_of("iterations.csv"), iterations + 2);
+  EXPECT_EQ(lines_of("trajectory.csv"), 60 + 2);
+  // A heading, a line per iterate, plain ones because this is no terminal.
+  EXPECT_GT(std::count(out_.begin(), out_.end(), '\n'), iterations + 2);
+  EXPECT_EQ(out_.find('\r'), std::string::npos);
+  EXPECT_NE(out_.find("constraints: all"), std::string::npos);
+  EXPECT_TRUE(err_.empty()) << err_;
+}
+
+TEST_F(FingerReachProgram, SaysThatItDidNotConvergeAndWritesItsBest) {
+  EXPECT_EQ(run({"--steps", "60", "--max-iterations", "1"}), 5);
+  EXPECT_EQ(result()["status"], "iteration limit");
+  EXPECT_FALSE(result()["violated"].empty());
+}
+
+TEST_F(FingerReachProgram, KeepsItsBestWhenInterrupted) {
+  Program program(folder_, {HBAR_FINGER_REACH, "--out", results().string()});
+  program.interrupt();
+  EXPECT_EQ(program.wait(), 130);
+  EXPECT_EQ(result()["status"], "interrupted");
+}
+
+TEST_F(FingerReachProgram, RefusesWrongOptionsScenesAndFolders) {
+  EXPECT_EQ(run({"--steps", "61"}), 2);
+  EXPECT_EQ(run({"--step", "60"}), 2);
+  EXPECT_FALSE(std::filesystem::exists(results()));
+  EXPECT_EQ(run({"--scene", (kScenes / "pendulum.xml").string()}), 3);
+  EXPECT_EQ(run({"--scene", "/nowhere.xml"}), 6);
+  Program no_folder(folder_, {HBAR_FINGER_REACH, "--out", "/proc/results"});
+  EXPECT_EQ(no_folder.wait(), 6);
+  Program full(folder_, {HBAR_FINGER_REACH, "--out", results().string()}, "/dev/full");
+  EXPECT_EQ(full.wait(), 6);
+}
+
+}  // namespace
+}  // namespace hbar::tool
