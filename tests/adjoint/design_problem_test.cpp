@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "hbar/adjoint/objective_terms.h"
 #include "hbar/solvers/gradient_check.h"
@@ -134,6 +135,30 @@ TEST(DesignProblem, FailsAPointThatCannotBe) {
   EXPECT_THROW(static_cast<void>(problem.objective(x)), solvers::EvaluationError);
   EXPECT_NO_THROW(static_cast<void>(problem.objective(start)));
   EXPECT_THROW(static_cast<void>(problem.objective(start.head(3))), InvalidInput);
+}
+
+TEST(DesignProblem, FailsAPointWhoseSimulationFails) {
+  DesignProblemParts parts = small_parts("bdf1");
+  SimulationOptions options = parts.simulator.options();
+  options.newton.max_iter = 1;
+  options.max_halvings = 0;
+  parts.simulator = Simulator(parts.simulator.model(), parts.simulator.parameters(), options);
+  DesignProblem problem(std::move(parts));
+  EXPECT_THROW(static_cast<void>(problem.objective(problem.variables().start)),
+               solvers::EvaluationError);
+}
+
+TEST(DesignProblem, ControlsAMechanismThatIsNotDesigned) {
+  DesignProblemParts parts = small_parts("bdf2");
+  const Model model = parts.simulator.model();
+  parts.simulator = Simulator(model, ParameterSet(), parts.simulator.options());
+  parts.map = std::make_shared<IdentityDesignMap>(ParameterSet());
+  parts.constraints.erase(parts.constraints.begin() + 3);  // on parameters
+  parts.controls.scale = Eigen::VectorXd::Constant(model.control_count(), 0.5);
+  DesignProblem problem(std::move(parts));
+  EXPECT_EQ(problem.variables().start.size(), 4 * model.control_count());
+  const solvers::GradientCheck check = solvers::check_gradients(problem, problem.variables().start);
+  EXPECT_LT(check.gap, 1e-6) << check.gap_name;
 }
 
 TEST(DesignProblem, RefusesPartsThatDoNotFit) {
