@@ -69,7 +69,7 @@ void AdjointSweep::Workspace::solve_block(const Trajectory& trajectory, int s) {
     const auto product = stage.by_q() + rate * stage.by_qdot() + (rate * rate) * stage.by_a();
     residual = y - product;
     const double scale = y.norm() + (rate * rate) * stage.by_a().norm();
-    return scale > 0.0 ? residual.norm() / scale : 0.0;
+    return scale == 0.0 ? 0.0 : residual.norm() / scale;  // a NaN stays one
   };
   const auto refine = [&](const Eigen::PartialPivLU<Eigen::MatrixXd>& factors) {
     z = factors.transpose().solve(y);

@@ -228,7 +228,7 @@ TEST_P(GradientOfEveryIntegrator, NeedsNoNewFactorsOnASmoothMotion) {
   EXPECT_LT(sweep.worst_residual(), 1e-14);
 }
 
-TEST(AdjointSweep, DISABLED_RefusesASingularBlock) {
+TEST(AdjointSweep, RefusesASingularBlock) {
   const Model model = testing::slider(0.0, testing::kGravity);
   Simulator simulator = make_simulator(model, "bdf1", 0.5, 3);
   Trajectory trajectory = simulator.rollout(simulator.nominal_inputs()).trajectory();

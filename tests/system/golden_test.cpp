@@ -32,8 +32,7 @@ std::vector<std::string> run_names() {
 
 Eigen::VectorXd vector_of(const json& array) {
   const auto values = array.get<std::vector<double>>();
-  return Eigen::Map<const Eigen::VectorXd>(values.data(),
-                                           static_cast<Eigen::Index>(values.size()));
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 /// Rows of numbers as the columns of a matrix.
@@ -98,8 +97,7 @@ TEST_P(GoldenRun, HasTheSameTrajectoryVariablesAndObjective) {
               tolerance_);
   }
   const double golden_objective = golden_.at("objective");
-  EXPECT_NEAR(objective().value(values), golden_objective,
-              tolerance_ * std::abs(golden_objective));
+  EXPECT_NEAR(objective().value(values), golden_objective, tolerance_ * std::abs(golden_objective));
 }
 
 TEST_P(GoldenRun, HasTheSameMassProperties) {
@@ -162,12 +160,11 @@ TEST_P(GoldenRun, HasTheSameGradients) {
   EXPECT_GE(compared, 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, GoldenRun, testing::ValuesIn(run_names()),
-                         [](const auto& run) {
-                           std::string name = run.param;
-                           std::replace(name.begin(), name.end(), '.', '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, GoldenRun, testing::ValuesIn(run_names()), [](const auto& run) {
+  std::string name = run.param;
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+});
 
 }  // namespace
 }  // namespace hbar
