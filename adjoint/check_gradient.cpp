@@ -172,9 +172,9 @@ class Prober {
     class_norm = std::sqrt(class_norm);
     const double slope = gradient_.dot(d);
     // A class that Ψ hardly depends on is measured against Ψ: differences resolve no more.
-    const double scale = std::max(class_norm, 1e-4 * std::abs(value_));
+    double scale = std::max(class_norm, 1e-4 * std::abs(value_));
     if (scale == 0.0) {
-      return;
+      scale = 1.0;  // at rest and at the optimum: absolute figures
     }
     row.dot_gap = std::max(row.dot_gap, dot_gap(d, slope, scale));
     differences(d, slope, scale, row);
