@@ -17,9 +17,10 @@ TEST(NearestName, HasTheSmallestEditDistance) {
 }
 
 TEST(NearestName, CountsInsertionsDeletionsAndSubstitutionsAlike) {
-  EXPECT_EQ(nearest_name("abcd", {"abXXcd", "abc", "wxyz"}), "abc");
-  EXPECT_EQ(nearest_name("abcd", {"abXcd", "aXXd"}), "abXcd");
-  EXPECT_EQ(nearest_name("abcd", {"XbcX", "abcX"}), "abcX");
+  // The first candidate needs two edits, the second one: the first would win a tie.
+  EXPECT_EQ(nearest_name("abcd", {"abXXcd", "abc"}), "abc");
+  EXPECT_EQ(nearest_name("abcd", {"aXXd", "abXcd"}), "abXcd");
+  EXPECT_EQ(nearest_name("abcd", {"abcdXX", "abcX"}), "abcX");
 }
 
 TEST(UnknownNameHint, SuggestsANearNameAndListsTheRestOtherwise) {
