@@ -35,7 +35,7 @@ cmake_minimum_required(VERSION 3.22)
 project(refused LANGUAGES CXX)
 find_package(hbar REQUIRED COMPONENTS teleport)
 PROJECT
-if cmake -S "$scratch/refused" -B "$scratch/refused/build" \
+if cmake -G Ninja -S "$scratch/refused" -B "$scratch/refused/build" \
      -DCMAKE_PREFIX_PATH="$scratch/prefix" >"$scratch/refused.log" 2>&1 ||
    ! grep -q 'no component teleport' "$scratch/refused.log"; then
   echo "package: an unknown component was not refused" >&2
