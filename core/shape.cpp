@@ -57,7 +57,53 @@ MassProperties properties(const Capsule& capsule, double density) {
   return {tube.mass + ball.mass, {across, across, tube.inertia.z() + ball.inertia.z()}};
 }
 
+std::vector<double> sizes(const NoShape&) { return {}; }
+std::vector<double> sizes(const Cuboid& cuboid) {
+  return {cuboid.size.x(), cuboid.size.y(), cuboid.size.z()};
+}
+std::vector<double> sizes(const Sphere& sphere) { return {sphere.radius}; }
+std::vector<double> sizes(const Cylinder& cylinder) { return {cylinder.radius, cylinder.length}; }
+std::vector<double> sizes(const Capsule& capsule) { return {capsule.radius, capsule.length}; }
+
+Shape resized(const NoShape&, std::span<const double>) { return NoShape{}; }
+Shape resized(const Cuboid&, std::span<const double> sizes) {
+  return Cuboid{{sizes[0], sizes[1], sizes[2]}};
+}
+Shape resized(const Sphere&, std::span<const double> sizes) { return Sphere{sizes[0]}; }
+Shape resized(const Cylinder&, std::span<const double> sizes) {
+  return Cylinder{sizes[0], sizes[1]};
+}
+Shape resized(const Capsule&, std::span<const double> sizes) { return Capsule{sizes[0], sizes[1]}; }
+
 }  // namespace
+
+int size_count(const Shape& shape) { return static_cast<int>(sizes_of(shape).size()); }
+
+std::vector<double> sizes_of(const Shape& shape) {
+  return std::visit([](const auto& solid) { return sizes(solid); }, shape);
+}
+
+std::vector<std::string> size_names(const Shape& shape) {
+  switch (size_count(shape)) {
+    case 3:
+      return {"size.x", "size.y", "size.z"};
+    case 2:
+      return {"radius", "length"};
+    case 1:
+      return {"radius"};
+    default:
+      return {};
+  }
+}
+
+Shape with_sizes(const Shape& shape, std::span<const double> sizes) {
+  const int count = size_count(shape);
+  if (static_cast<int>(sizes.size()) != count) {
+    throw InvalidInput(
+        concat("with_sizes: got ", sizes.size(), " lengths; this shape has ", count));
+  }
+  return std::visit([sizes](const auto& solid) { return resized(solid, sizes); }, shape);
+}
 
 MassProperties solid_mass_properties(const Shape& shape, double density) {
   require_positive(density, "the density");

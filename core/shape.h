@@ -1,6 +1,9 @@
 #pragma once
 
+#include <span>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "hbar/core/scalar.h"
 
@@ -34,6 +37,22 @@ struct NoShape {
   friend bool operator==(const NoShape&, const NoShape&) = default;
 };
 using Shape = std::variant<NoShape, Cuboid, Sphere, Cylinder, Capsule>;
+
+/// How many lengths a shape is made of: 3 of a cuboid, 1 of a ball, 2 of a cylinder or a capsule,
+/// 0 of NoShape.
+[[nodiscard]] int size_count(const Shape& shape);
+
+/// Those lengths: a cuboid's x, y, z; a ball's radius; a cylinder's or a capsule's radius, length.
+[[nodiscard]] std::vector<double> sizes_of(const Shape& shape);
+
+/// Their names, in the same order: "size.x", "size.y", "size.z"; "radius"; "radius", "length".
+[[nodiscard]] std::vector<std::string> size_names(const Shape& shape);
+
+/// A shape of the same kind with other lengths, which are not checked.
+///
+/// @param sizes  as sizes_of(shape) orders them, length  [size_count(shape)]
+/// @throws InvalidInput if their number is not size_count(shape)
+[[nodiscard]] Shape with_sizes(const Shape& shape, std::span<const double> sizes);
 
 /// Mass and principal moments of a solid about its centre of mass.
 struct MassProperties {

@@ -115,5 +115,42 @@ TEST(SolidMassProperties, RefusesWhatIsNoSolid) {
   }
 }
 
+TEST(EveryShape, NamesItsSizesAndTakesOthers) {
+  struct Case {
+    Shape shape;
+    std::vector<double> sizes;
+    std::vector<std::string> names;
+    std::vector<double> others;
+    Shape resized;
+  };
+  const std::vector<Case> cases = {
+      {NoShape{}, {}, {}, {}, NoShape{}},
+      {Cuboid{{1.0, 2.0, 3.0}},
+       {1.0, 2.0, 3.0},
+       {"size.x", "size.y", "size.z"},
+       {4.0, 5.0, 6.0},
+       Cuboid{{4.0, 5.0, 6.0}}},
+      {Sphere{1.5}, {1.5}, {"radius"}, {2.5}, Sphere{2.5}},
+      {Cylinder{0.5, 2.0}, {0.5, 2.0}, {"radius", "length"}, {3.0, 4.0}, Cylinder{3.0, 4.0}},
+      {Capsule{0.5, 2.0}, {0.5, 2.0}, {"radius", "length"}, {3.0, 4.0}, Capsule{3.0, 4.0}},
+  };
+  ASSERT_EQ(cases.size(), std::variant_size_v<Shape>);
+  for (const Case& c : cases) {
+    EXPECT_EQ(sizes_of(c.shape), c.sizes);
+    EXPECT_EQ(size_names(c.shape), c.names);
+    EXPECT_EQ(size_count(c.shape), static_cast<int>(c.sizes.size()));
+    EXPECT_EQ(with_sizes(c.shape, c.others), c.resized);
+    EXPECT_EQ(with_sizes(c.shape, c.sizes), c.shape);
+  }
+}
+
+TEST(WithSizes, RefusesAnotherNumberOfLengths) {
+  const std::vector<double> sizes = {1.0};
+  EXPECT_EQ(message_of<InvalidInput>([&] {
+              static_cast<void>(with_sizes(Capsule{1.0, 1.0}, sizes));
+            }),
+            "with_sizes: got 1 lengths; this shape has 2");
+}
+
 }  // namespace
 }  // namespace hbar
