@@ -59,28 +59,82 @@ void check_motors(const Description& description, const Names<Joint>& joints,
   }
 }
 
+/// Whether a body has points to test, against the ground or against another body.
+bool has_contact_points(const Body& body, bool against_ground) {
+  if (const auto* ball = std::get_if<SphereBody>(&body.shape)) {
+    return against_ground || ball->general_contact_resolution;
+  }
+  const auto* const abstract = std::get_if<AbstractBody>(&body.shape);
+  return abstract == nullptr || abstract->contacts || abstract->collision;
+}
+
+/// Which attributes name a contact's bodies.
+struct BodyNames {
+  const char* first;
+  const char* second;
+};
+
+BodyNames names_of_bodies(ContactKind kind) {
+  if (kind == ContactKind::kGround) return {"body", ""};
+  if (kind == ContactKind::kCuboidCuboid) return {"body_a", "body_b"};
+  return {"general_body", "primitive_body"};
+}
+
+void check_points(const Contact& contact, const Body& body, const ReadContext& context) {
+  const bool ground = contact.kind == ContactKind::kGround;
+  if (has_contact_points(body, ground)) return;
+  const bool ball = std::holds_alternative<SphereBody>(body.shape);
+  throw InvalidInput(
+      attribute_place(context, contact.line.number, contact_element(contact.kind),
+                      names_of_bodies(contact.kind).first, body.name) +
+      (ball ? "this ball has no contact points; give its <body> general_contact_resolution, or "
+              "make it the primitive_body"
+            : "this abstract body has no contact points; give its <body> contacts or a "
+              "<collision>"));
+}
+
+void check_pair(const Contact& contact, const Body& a, const Body& b, const ReadContext& context) {
+  const auto place = [&](const char* attribute, const Body& body) {
+    return attribute_place(context, contact.line.number, contact_element(contact.kind), attribute,
+                           body.name);
+  };
+  const auto [first, second] = names_of_bodies(contact.kind);
+  if (&a == &b) {
+    throw InvalidInput(place(second, b) + "a body does not touch itself; name two bodies");
+  }
+  if (contact.kind == ContactKind::kCuboidCuboid) {
+    for (const Body* body : {&a, &b}) {
+      if (std::holds_alternative<CuboidBody>(body->shape)) continue;
+      throw InvalidInput(place(body == &a ? first : second, *body) +
+                         "this body is not a cuboid; both must be");
+    }
+  }
+  if (std::holds_alternative<AbstractBody>(b.shape)) {
+    throw InvalidInput(place(second, b) +
+                       "an abstract body has no distance; primitive_body names a cuboid, sphere, "
+                       "cylinder, capsule or mesh");
+  }
+}
+
 void check_contacts(const Description& description, const Names<Body>& bodies,
                     const ReadContext& context) {
+  std::unordered_map<std::string, int> named;
   for (const Contact& contact : description.contacts) {
     const int line = contact.line.number;
-    if (contact.kind == ContactKind::kGround) {
-      bodies.find(contact.body_a, line, "ground_contact", "body", "body", context);
-      continue;
-    }
-    const bool cuboids = contact.kind == ContactKind::kCuboidCuboid;
-    const char* const element = cuboids ? "cuboid_cuboid_contact" : "general_primitive_contact";
-    const char* const first = cuboids ? "body_a" : "general_body";
-    const char* const second = cuboids ? "body_b" : "primitive_body";
+    const std::string_view element = contact_element(contact.kind);
+    const auto [first, second] = names_of_bodies(contact.kind);
     const Body& a = bodies.find(contact.body_a, line, element, first, "body", context);
-    const Body& b = bodies.find(contact.body_b, line, element, second, "body", context);
-    const std::string place = attribute_place(context, line, element, second, contact.body_b);
-    if (&a == &b) throw InvalidInput(place + "a body does not touch itself; name two bodies");
-    for (const Body* body : {&a, &b}) {
-      if (cuboids && !std::holds_alternative<CuboidBody>(body->shape)) {
-        throw InvalidInput(
-            attribute_place(context, line, element, body == &a ? first : second, body->name) +
-            "this body is not a cuboid; both must be");
-      }
+    if (contact.kind != ContactKind::kGround) {
+      const Body& b = bodies.find(contact.body_b, line, element, second, "body", context);
+      check_pair(contact, a, b, context);
+    }
+    check_points(contact, a, context);
+    if (!contact.name) continue;
+    const auto [other, is_new] = named.emplace(*contact.name, line);
+    if (!is_new) {
+      throw InvalidInput(attribute_place(context, line, element, "name", *contact.name) +
+                         concat("the contact of line ", other->second,
+                                " has this name; names of contacts must differ"));
     }
   }
 }

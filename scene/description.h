@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -142,6 +143,7 @@ struct MeshBody {
   MeshTransform transform_type = MeshTransform::kBodyToJoint;
   std::optional<std::string> contacts = {};  ///< file of contact points
   int contact_count = 64;                    ///< points chosen where there is no such file, ≥ 1
+  int distance_cells = 48;  ///< along the longest side of its distance grid, 8 … 256
   friend bool operator==(const MeshBody&, const MeshBody&) = default;
 };
 
@@ -157,6 +159,7 @@ struct Collision {
   std::string contacts = {};         ///< file of contact points
   Vec3 pos = {0.0, 0.0, 0.0};        ///< length  [3]
   Quat quat = {1.0, 0.0, 0.0, 0.0};  ///<         [4]
+  SourceLine line = {};
   friend bool operator==(const Collision&, const Collision&) = default;
 };
 /// A body known by its mass properties.
@@ -226,9 +229,19 @@ struct Motor {
 /// Which element a contact was.
 enum class ContactKind { kGround, kGeneralPrimitive, kCuboidCuboid };
 
+/// How an element of a kind is spelled.
+[[nodiscard]] constexpr std::string_view contact_element(ContactKind kind) {
+  constexpr std::array<std::string_view, 3> kNames = {"ground_contact", "general_primitive_contact",
+                                                      "cuboid_cuboid_contact"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
 /// How the normal force follows from the depth.
 /// Normal force: damping times depth, or damping alone.
 enum class ContactLaw { kDocument, kLinear };
+
+/// Friction: bounded by a multiple of the normal force with a corner, or smoothly.
+enum class Friction { kDocument, kSmooth };
 
 /// Where the other body is pushed: at the contact point, or at its own surface.
 /// Where the second body is pushed: at the contact point, or at its own surface.
@@ -246,7 +259,9 @@ struct Contact {
   double damping = 0.0;     ///< document: force·time/length²; linear: force·time/length; ≥ 0
   std::optional<bool> render = {};
   ContactLaw law = ContactLaw::kDocument;
-  std::optional<std::string> friction = {};
+  Friction friction = Friction::kDocument;
+  std::optional<double> friction_width = {};  ///< of smooth friction, length/time, > 0
+  bool adhesion = true;                       ///< damping may make the normal force pull
   Reaction reaction = Reaction::kPoint;
   bool caps = true;  ///< a cylinder's end faces count for its distance
   SourceLine line = {};

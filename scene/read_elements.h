@@ -27,7 +27,7 @@ void read_defaults(const tinyxml2::XMLElement& block, ReadContext& context);
 /// `<motor>`.
 [[nodiscard]] Motor read_motor(XmlElement element);
 /// `<ground_contact>`, `<general_primitive_contact>` or `<cuboid_cuboid_contact>`.
-[[nodiscard]] Contact read_contact(const XmlElement& element);
+[[nodiscard]] Contact read_contact(XmlElement element);
 /// `<endeffector>`.
 [[nodiscard]] EndEffector read_end_effector(const XmlElement& element);
 /// `<tactile>`.

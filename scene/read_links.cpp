@@ -66,9 +66,12 @@ CapsuleBody read_capsule(const XmlElement& element) {
 }
 
 MeshBody read_mesh(const XmlElement& element) {
-  return {element.text("filename"), element.numbers<3>("scale"),
+  return {element.text("filename"),
+          element.numbers<3>("scale"),
           static_cast<MeshTransform>(element.choice("transform_type")),
-          element.optional_text("contacts"), element.integer("contact_count")};
+          element.optional_text("contacts"),
+          element.integer("contact_count"),
+          element.integer("distance_cells")};
 }
 
 void check_inertia(const XmlElement& element, const std::vector<double>& inertia) {
@@ -121,8 +124,10 @@ void read_body_children(const XmlElement& element, Body& body) {
       abstract->visual =
           Visual{child.text("mesh"), child.numbers<3>("pos"), child.quaternion("quat")};
     } else {
-      abstract->collision =
-          Collision{child.text("contacts"), child.numbers<3>("pos"), child.quaternion("quat")};
+      abstract->collision = Collision{child.text("contacts"),
+                                      child.numbers<3>("pos"),
+                                      child.quaternion("quat"),
+                                      {child.line()}};
     }
   }
 }

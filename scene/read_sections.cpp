@@ -32,9 +32,9 @@ RectArray read_rect_array(const XmlElement& element) {
 }
 
 ContactKind contact_kind(std::string_view name) {
-  if (name == "ground_contact") return ContactKind::kGround;
-  return name == "general_primitive_contact" ? ContactKind::kGeneralPrimitive
-                                             : ContactKind::kCuboidCuboid;
+  if (name == contact_element(ContactKind::kGround)) return ContactKind::kGround;
+  return name == contact_element(ContactKind::kGeneralPrimitive) ? ContactKind::kGeneralPrimitive
+                                                                 : ContactKind::kCuboidCuboid;
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ Motor read_motor(XmlElement element) {
   return motor;
 }
 
-Contact read_contact(const XmlElement& element) {
+Contact read_contact(XmlElement element) {
   Contact contact;
   contact.line = {element.line()};
   contact.kind = contact_kind(element.name());
@@ -107,7 +107,11 @@ Contact read_contact(const XmlElement& element) {
   contact.damping = element.number("damping");
   contact.render = element.optional_flag("render");
   contact.law = static_cast<ContactLaw>(element.choice("law"));
-  contact.friction = element.optional_text("friction");
+  contact.friction = static_cast<Friction>(element.read_type("friction"));
+  if (contact.friction == Friction::kSmooth) {
+    contact.friction_width = element.number("friction_width");
+  }
+  contact.adhesion = element.flag("adhesion");
   if (element.applies("reaction")) {
     contact.reaction = static_cast<Reaction>(element.choice("reaction"));
   }

@@ -24,7 +24,7 @@ class SceneReader {
       if (std::string_view(child->Name()) == "default") read_defaults(*child, context_);
     }
     for (const tinyxml2::XMLElement* child : children) read_section(*child);
-    announce();
+    notice_missing_ground();
   }
 
  private:
@@ -71,20 +71,13 @@ class SceneReader {
                     "law=\"linear\" is what earlier readers of this format do");
   }
 
-  /// Says once per kind what is kept and not simulated.
-  void announce() {
-    const std::string end = " read and kept, but not simulated yet";
-    if (description_.ground) {
-      context_.notice(description_.ground->line.number, "<ground>: the ground is" + end);
-    }
-    if (!description_.contacts.empty()) {
-      context_.notice(description_.contacts.front().line.number,
-                      concat("<contact>: contact (", description_.contacts.size(), ") is", end));
-    }
-    if (!description_.tactile_sensors.empty()) {
-      context_.notice(
-          description_.tactile_sensors.front().line.number,
-          concat("<sensor>: tactile sensing (", description_.tactile_sensors.size(), ") is", end));
+  /// A scene may leave its ground out, but hardly by intention where bodies touch it.
+  void notice_missing_ground() {
+    if (description_.ground) return;
+    for (const Contact& contact : description_.contacts) {
+      if (contact.kind != ContactKind::kGround) continue;
+      context_.notice(contact.line.number,
+                      "<ground_contact>: the scene has no <ground>, so it is the plane z = 0");
     }
   }
 

@@ -23,6 +23,8 @@ std::string range_text(Range range) {
       return " >= 1";
     case Range::kAtLeastTwo:
       return " >= 2";
+    case Range::kGridCells:
+      return " from 8 to 256";
     case Range::kMask:
       return " from 0 to 63";
   }

@@ -22,6 +22,7 @@ enum class Range {
   kOrdered,      ///< two, the first not above the second
   kAtLeastOne,   ///< each ≥ 1
   kAtLeastTwo,   ///< each ≥ 2
+  kGridCells,    ///< each 8 … 256
   kMask          ///< 0 … 63
 };
 

@@ -197,7 +197,8 @@ constexpr std::array kBody = {
     AttributeInfo{.name = "contacts",
                   .kind = Kind::kText,
                   .types = "mesh",
-                  .sentence = "File of contact points: a count, then x y z per line.",
+                  .sentence = "File of contact points: a count, then x y z per line, in the OBJ "
+                              "file's frame.",
                   .extension = true},
     AttributeInfo{.name = "contact_count",
                   .kind = Kind::kInteger,
@@ -205,6 +206,14 @@ constexpr std::array kBody = {
                   .range = Range::kAtLeastOne,
                   .types = "mesh",
                   .sentence = "Vertices taken as contact points where there is no such file.",
+                  .extension = true},
+    AttributeInfo{.name = "distance_cells",
+                  .kind = Kind::kInteger,
+                  .fallback = "48",
+                  .range = Range::kGridCells,
+                  .types = "mesh",
+                  .sentence = "Cells along the longest side of the grid that holds its distance, "
+                              "where points are tested against it.",
                   .extension = true},
     AttributeInfo{.name = "mass",
                   .required = true,
@@ -226,8 +235,8 @@ constexpr std::array kBody = {
     AttributeInfo{.name = "contacts",
                   .kind = Kind::kText,
                   .types = "abstract",
-                  .sentence = "File of contact points: a count, then x y z per line, in the body "
-                              "frame."},
+                  .sentence = "File of contact points: a count, then x y z per line, in the frame "
+                              "that pos and quat place."},
     AttributeInfo{.name = "mu",
                   .kind = Kind::kIgnored,
                   .sentence = "Accepted and ignored: some old files have it."},

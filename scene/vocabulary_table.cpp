@@ -28,6 +28,10 @@ constexpr AttributeInfo kRgba = {
     .name = "rgba", .count = 4, .sentence = "Red, green, blue, opacity; drawn only."};
 constexpr AttributeInfo kName = {
     .name = "name", .kind = Kind::kText, .sentence = "Names it in output."};
+constexpr AttributeInfo kContactName = {.name = "name",
+                                        .kind = Kind::kText,
+                                        .sentence = "Names it; the names of its bodies if absent.",
+                                        .extension = true};
 constexpr AttributeInfo kRender = {
     .name = "render", .kind = Kind::kFlag, .sentence = "Whether its forces are drawn."};
 constexpr AttributeInfo kKn =
@@ -46,8 +50,28 @@ constexpr AttributeInfo kLaw = {.name = "law",
                                     "damping alone, in force·time/length (linear).",
                                 .extension = true};
 constexpr AttributeInfo kFriction = {.name = "friction",
-                                     .kind = Kind::kText,
-                                     .sentence = "Law of friction; kept.",
+                                     .kind = Kind::kChoice,
+                                     .fallback = "document",
+                                     .choices = "document|smooth",
+                                     .sentence =
+                                         "Friction: kt times the sliding velocity, at most mu "
+                                         "times the normal force (document), or mu times it, less "
+                                         "at velocities below friction_width (smooth).",
+                                     .extension = true};
+constexpr AttributeInfo kFrictionWidth = {
+    .name = "friction_width",
+    .required = true,
+    .range = Range::kPositive,
+    .unit = "length/time",
+    .types = "smooth",
+    .sentence = "Sliding velocity at which friction is 1/√2 of its greatest; kt is not used.",
+    .extension = true};
+constexpr AttributeInfo kAdhesion = {.name = "adhesion",
+                                     .kind = Kind::kFlag,
+                                     .fallback = "true",
+                                     .sentence =
+                                         "Whether damping may make the normal force pull; if not, "
+                                         "such a force is 0.",
                                      .extension = true};
 constexpr AttributeInfo kReaction = {.name = "reaction",
                                      .kind = Kind::kChoice,
@@ -165,30 +189,7 @@ constexpr std::array kMotor = {
                   .sentence = "Whether it sees the state at the end of the step, not its start.",
                   .extension = true}};
 constexpr std::array kGroundContact = {reference_row("body", "The body that touches the ground."),
-                                       kName,
-                                       kKn,
-                                       kKt,
-                                       kMu,
-                                       kDamping,
-                                       kRender,
-                                       kLaw,
-                                       kFriction};
-constexpr std::array kGeneralContact = {
-    reference_row("general_body", "The body whose contact points are tested."),
-    reference_row("primitive_body", "The body whose distance is asked."),
-    kName,
-    kKn,
-    kKt,
-    kMu,
-    kDamping,
-    kRender,
-    kLaw,
-    kFriction,
-    kReaction,
-    kCaps};
-constexpr std::array kCuboidContact = {reference_row("body_a", "One cuboid."),
-                                       reference_row("body_b", "The other."),
-                                       kName,
+                                       kContactName,
                                        kKn,
                                        kKt,
                                        kMu,
@@ -196,6 +197,35 @@ constexpr std::array kCuboidContact = {reference_row("body_a", "One cuboid."),
                                        kRender,
                                        kLaw,
                                        kFriction,
+                                       kFrictionWidth,
+                                       kAdhesion};
+constexpr std::array kGeneralContact = {
+    reference_row("general_body", "The body whose contact points are tested."),
+    reference_row("primitive_body", "The body whose distance is asked."),
+    kContactName,
+    kKn,
+    kKt,
+    kMu,
+    kDamping,
+    kRender,
+    kLaw,
+    kFriction,
+    kFrictionWidth,
+    kAdhesion,
+    kReaction,
+    kCaps};
+constexpr std::array kCuboidContact = {reference_row("body_a", "One cuboid."),
+                                       reference_row("body_b", "The other."),
+                                       kContactName,
+                                       kKn,
+                                       kKt,
+                                       kMu,
+                                       kDamping,
+                                       kRender,
+                                       kLaw,
+                                       kFriction,
+                                       kFrictionWidth,
+                                       kAdhesion,
                                        kReaction};
 constexpr std::array kEndEffector = {
     reference_row("joint", "The joint in whose frame the point is fixed."), kPos,

@@ -156,6 +156,7 @@ void write_shape(XmlWriter& out, const MeshBody& body) {
   out.put_choice("transform_type", body.transform_type);
   out.put("contacts", body.contacts);
   out.put("contact_count", body.contact_count);
+  out.put("distance_cells", body.distance_cells);
 }
 void write_shape(XmlWriter& out, const AbstractBody& body) {
   out.put("mass", body.mass);
@@ -273,9 +274,7 @@ void write_one(XmlWriter& out, const Motor& motor) {
 void write_one(XmlWriter& out, const Contact& contact) {
   const bool ground = contact.kind == ContactKind::kGround;
   const bool general = contact.kind == ContactKind::kGeneralPrimitive;
-  out.open(ground    ? "ground_contact"
-           : general ? "general_primitive_contact"
-                     : "cuboid_cuboid_contact");
+  out.open(contact_element(contact.kind));
   out.put(ground ? "body" : general ? "general_body" : "body_a", contact.body_a);
   if (!ground) out.put(general ? "primitive_body" : "body_b", contact.body_b);
   out.put("name", contact.name);
@@ -285,7 +284,9 @@ void write_one(XmlWriter& out, const Contact& contact) {
   out.put("damping", contact.damping);
   out.put("render", contact.render);
   out.put_choice("law", contact.law);
-  out.put("friction", contact.friction);
+  out.put_choice("friction", contact.friction);
+  out.put("friction_width", contact.friction_width);
+  out.put("adhesion", contact.adhesion);
   if (!ground) out.put_choice("reaction", contact.reaction);
   if (general) out.put("caps", contact.caps);
   out.close();

@@ -236,6 +236,9 @@ void XmlElement::check_range(std::string_view attribute, const std::vector<doubl
     case Range::kAtLeastTwo:
       ok = all([](double v) { return v >= 2.0; });
       break;
+    case Range::kGridCells:
+      ok = all([](double v) { return v >= 8.0 && v <= 256.0; });
+      break;
     case Range::kMask:
       ok = all([](double v) { return v >= 0.0 && v <= 63.0; });
       break;

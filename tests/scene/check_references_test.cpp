@@ -18,6 +18,29 @@ TEST(References, NamesOfDifferentKindsMayBeEqual) {
       "a.xml")));
 }
 
+/// A robot whose body "f" is abstract and has no contact points.
+const std::string kAbstractRobot =
+    "<robot><link name=\"f\"><joint type=\"fixed\"/><body type=\"abstract\" mass=\"1\" "
+    "inertia=\"1 1 1\"/></link></robot>";
+
+TEST(References, ToBodiesThatHavePointsAreTaken) {
+  const auto robot = [](const std::string& body) {
+    return "<robot><link name=\"f\"><joint type=\"fixed\"/>" + body + "</link></robot>";
+  };
+  for (const std::string body :
+       {"<body type=\"sphere\" radius=\"1\" general_contact_resolution=\"2 3\"/>",
+        "<body type=\"mesh\" filename=\"m.obj\"/>",
+        "<body type=\"abstract\" mass=\"1\" inertia=\"1 1 1\" contacts=\"c.txt\"/>",
+        "<body type=\"abstract\" mass=\"1\" inertia=\"1 1 1\"><collision "
+        "contacts=\"c.txt\"/></body>"}) {
+    EXPECT_NO_THROW(static_cast<void>(read_scene_text(
+        scene_with_section("<contact><general_primitive_contact general_body=\"f\" "
+                           "primitive_body=\"b\"/><ground_contact body=\"f\"/></contact>" +
+                           robot(body)),
+        "a.xml")));
+  }
+}
+
 const std::vector<BadScene> kRefused = {
     {"motor of a missing joint", scene_with_section("<actuator><motor joint=\"jj\"/></actuator>"),
      "bad.xml:2: <motor joint=\"jj\">: no joint has this name; did you mean 'j'?"},
@@ -33,6 +56,26 @@ const std::vector<BadScene> kRefused = {
     {"contact of a missing body",
      scene_with_section("<contact><ground_contact body=\"x\"/></contact>"),
      "bad.xml:2: <ground_contact body=\"x\">: no body has this name; did you mean 'b'?"},
+    {"contact without points of an abstract body",
+     scene_with_section("<contact><ground_contact body=\"f\"/></contact>" + kAbstractRobot),
+     "bad.xml:2: <ground_contact body=\"f\">: this abstract body has no contact points; give its "
+     "<body> contacts or a <collision>"},
+    {"contact without points of a ball",
+     scene_with_section("<contact><general_primitive_contact general_body=\"b\" "
+                        "primitive_body=\"d\"/></contact>"),
+     "bad.xml:2: <general_primitive_contact general_body=\"b\">: this ball has no contact points; "
+     "give its <body> general_contact_resolution, or make it the primitive_body"},
+    {"contact with an abstract body",
+     scene_with_section("<contact><general_primitive_contact general_body=\"d\" "
+                        "primitive_body=\"f\"/></contact>" +
+                        kAbstractRobot),
+     "bad.xml:2: <general_primitive_contact primitive_body=\"f\">: an abstract body has no "
+     "distance; primitive_body names a cuboid, sphere, cylinder, capsule or mesh"},
+    {"two contacts of one name",
+     scene_with_section("<contact><ground_contact body=\"b\" name=\"touch\"/>\n<ground_contact "
+                        "body=\"d\" name=\"touch\"/></contact>"),
+     "bad.xml:3: <ground_contact name=\"touch\">: the contact of line 2 has this name; names of "
+     "contacts must differ"},
     {"contact with a missing body",
      scene_with_section(
          "<contact><general_primitive_contact general_body=\"b\" primitive_body=\"x\"/></contact>"),

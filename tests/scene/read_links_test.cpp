@@ -74,9 +74,10 @@ TEST(EveryBodyType, IsReadWithAllItHas) {
             BodyShape(CylinderBody{2.0, 3.0, 4, 5}));
   EXPECT_EQ(shape("type=\"capsule\" radius=\"2\" length=\"3\" general_contact_resolution=\"4 5\""),
             BodyShape(CapsuleBody{2.0, 3.0, {4, 5}}));
-  EXPECT_EQ(shape("type=\"mesh\" filename=\"a.obj\" scale=\"1 2 3\" transform_type="
-                  "\"OBJ_TO_WORLD\" contacts=\"c.txt\" contact_count=\"9\""),
-            BodyShape(MeshBody{"a.obj", {1.0, 2.0, 3.0}, MeshTransform::kObjToWorld, "c.txt", 9}));
+  EXPECT_EQ(
+      shape("type=\"mesh\" filename=\"a.obj\" scale=\"1 2 3\" transform_type="
+            "\"OBJ_TO_WORLD\" contacts=\"c.txt\" contact_count=\"9\" distance_cells=\"32\""),
+      BodyShape(MeshBody{"a.obj", {1.0, 2.0, 3.0}, MeshTransform::kObjToWorld, "c.txt", 9, 32}));
   EXPECT_EQ(shape("type=\"abstract\" mass=\"2\" inertia=\"1 0 0 1 0 1\" mesh=\"a.obj\" "
                   "contacts=\"c.txt\" scale=\"1 2 3\""),
             BodyShape(AbstractBody{

@@ -28,15 +28,18 @@ TEST(Sections, ReadContacts) {
   const Description d = section(
       "<contact><ground_contact body=\"b\" kn=\"1\" kt=\"2\" mu=\"3\" damping=\"4\" "
       "law=\"linear\"/>"
-      "<general_primitive_contact general_body=\"b\" primitive_body=\"d\" reaction=\"surface\" "
-      "caps=\"false\" render=\"true\" friction=\"coulomb\" name=\"touch\"/>"
+      "<general_primitive_contact general_body=\"d\" primitive_body=\"b\" reaction=\"surface\" "
+      "caps=\"false\" render=\"true\" friction=\"smooth\" friction_width=\"0.5\" "
+      "adhesion=\"false\" name=\"touch\"/>"
       "<cuboid_cuboid_contact body_a=\"d\" body_b=\"e\"/></contact><robot><link name=\"e\">"
       "<joint type=\"fixed\"/><body type=\"cuboid\" size=\"1 1 1\"/></link></robot>");
   Contact ground{ContactKind::kGround, {}, "b", "", 1.0, 2.0, 3.0, 4.0};
   ground.law = ContactLaw::kLinear;
-  Contact general{ContactKind::kGeneralPrimitive, "touch", "b", "d"};
+  Contact general{ContactKind::kGeneralPrimitive, "touch", "d", "b"};
   general.render = true;
-  general.friction = "coulomb";
+  general.friction = Friction::kSmooth;
+  general.friction_width = 0.5;
+  general.adhesion = false;
   general.reaction = Reaction::kSurface;
   general.caps = false;
   const Contact cuboids{ContactKind::kCuboidCuboid, {}, "d", "e"};
@@ -73,6 +76,17 @@ TEST(Sections, ReadVariablesSensorsAndVirtualShapes) {
             (VirtualShape{"goal", VirtualSphere{2.0}, {1.0, 1.0, 1.0}, Vec4{0.0, 1.0, 0.0, 1.0}}));
   EXPECT_EQ(d.virtual_shapes.at(1),
             (VirtualShape{{}, VirtualCuboid{{1.0, 2.0, 3.0}, {0.0, 0.0, 0.0, 1.0}}, {}, {}}));
+}
+
+TEST(Sections, NoticeAWidthThatHasNoEffect) {
+  const Scene scene = read_scene_text(
+      scene_with_section("<ground/><contact><ground_contact body=\"b\" friction_width=\"1\"/>"
+                         "</contact>"),
+      "a.xml");
+  EXPECT_EQ(scene.description.contacts.at(0).friction_width, std::nullopt);
+  EXPECT_EQ(scene.notices,
+            std::vector<std::string>{"a.xml:2: <ground_contact friction=\"document\">: "
+                                     "friction_width has no effect on this friction"});
 }
 
 TEST(Sections, NoticeGravityOfTheOtherUnits) {
@@ -114,6 +128,23 @@ const std::vector<BadScene> kRefused = {
     {"unknown law",
      scene_with_section("<contact><ground_contact body=\"b\" law=\"cubic\"/></contact>"),
      "bad.xml:2: <ground_contact law=\"cubic\">: unknown law; law takes one of document, linear"},
+    {"unknown friction",
+     scene_with_section("<contact><ground_contact body=\"b\" friction=\"coulomb\"/></contact>"),
+     "bad.xml:2: <ground_contact friction=\"coulomb\">: unknown friction; friction takes one of "
+     "document, smooth"},
+    {"smooth friction without a width",
+     scene_with_section("<contact><ground_contact body=\"b\" friction=\"smooth\"/></contact>"),
+     "bad.xml:2: <ground_contact>: attribute friction_width is missing; friction_width takes 1 "
+     "number > 0"},
+    {"smooth friction of no width",
+     scene_with_section("<contact><ground_contact body=\"b\" friction=\"smooth\" "
+                        "friction_width=\"0\"/></contact>"),
+     "bad.xml:2: <ground_contact friction_width=\"0\">: out of range; friction_width takes 1 "
+     "number > 0"},
+    {"adhesion in between",
+     scene_with_section("<contact><ground_contact body=\"b\" adhesion=\"some\"/></contact>"),
+     "bad.xml:2: <ground_contact adhesion=\"some\">: \"some\" is neither; adhesion takes true or "
+     "false"},
     {"end effector without a joint",
      scene_with_section("<variable><endeffector pos=\"0 0 0\"/></variable>"),
      "bad.xml:2: <endeffector>: attribute joint is missing; joint takes a text that is not empty"},

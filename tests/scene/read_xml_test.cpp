@@ -87,20 +87,27 @@ TEST(ReadScene, DefaultsFillWhatIsNotSaid) {
             (Motor{"j", Control::kPosition, Vec2{-2.0, 2.0}, 20.0, 0.5, false, {}}));
 }
 
-TEST(ReadScene, AnnouncesWhatIsNotSimulatedOnce) {
-  const Scene scene = read_scene_text(
-      scene_with_section("<ground/>\n<contact><ground_contact body=\"b\" damping=\"1\"/>"
-                         "<ground_contact body=\"d\" damping=\"1\"/></contact>\n<sensor><tactile "
-                         "body=\"b\" type=\"abstract\" spec=\"s.txt\"/></sensor> f"),
-      "a.xml");
+TEST(ReadScene, NoticesAMissingGroundAndDampingWithoutLawOnce) {
+  const Scene scene =
+      read_scene_text(scene_with_section("\n<contact><ground_contact body=\"b\" damping=\"1\"/>\n"
+                                         "<ground_contact body=\"d\" damping=\"1\"/></contact> f"),
+                      "a.xml");
   EXPECT_EQ(scene.notices,
             (std::vector<std::string>{
                 "a.xml:4: <redmax>: the text \"f\" has no effect",
                 "a.xml:3: <ground_contact>: damping without law is multiplied by the depth; "
                 "law=\"linear\" is what earlier readers of this format do",
-                "a.xml:2: <ground>: the ground is read and kept, but not simulated yet",
-                "a.xml:3: <contact>: contact (2) is read and kept, but not simulated yet",
-                "a.xml:4: <sensor>: tactile sensing (1) is read and kept, but not simulated yet"}));
+                "a.xml:3: <ground_contact>: the scene has no <ground>, so it is the plane z = 0"}));
+}
+
+TEST(ReadScene, HasNoNoticeOfASceneThatSaysItAll) {
+  const Scene scene = read_scene_text(
+      scene_with_section("<ground/><contact><ground_contact body=\"b\" damping=\"1\" "
+                         "law=\"document\"/><general_primitive_contact general_body=\"d\" "
+                         "primitive_body=\"b\" damping=\"1\"/></contact><sensor><tactile "
+                         "body=\"b\" type=\"abstract\" spec=\"s.txt\"/></sensor>"),
+      "a.xml");
+  EXPECT_TRUE(scene.notices.empty()) << scene.notices.front();
 }
 
 TEST(ReadScene, ReadsAChainOfFiveThousandFlatLinks) {

@@ -37,8 +37,9 @@ Description everything() {
   robot.links.push_back(make_link("ball", 0, SphereBody{0.7, std::array<int, 2>{4, 5}}));
   robot.links.push_back(make_link("can", 0, CylinderBody{0.3, 0.9, 5, 6}));
   robot.links.push_back(make_link("pill", 2, CapsuleBody{0.3, 0.9, {6, 7}}));
-  robot.links.push_back(make_link(
-      "part", 3, MeshBody{"a b.obj", {1.5, 2.5, 3.5}, MeshTransform::kObjToWorld, "c.txt", 11}));
+  robot.links.push_back(
+      make_link("part", 3,
+                MeshBody{"a b.obj", {1.5, 2.5, 3.5}, MeshTransform::kObjToWorld, "c.txt", 11, 96}));
   AbstractBody abstract{2.5, {2.0, 0.1, 0.2, 3.0, 0.3, 4.0}, "m.obj", "c.txt", {2.0, 3.0, 4.0}, {},
                         {}};
   abstract.visual = Visual{"v.obj", {0.1, 0.2, 0.3}, {0.0, 0.6, 0.8, 0.0}};
@@ -72,7 +73,9 @@ Description everything() {
       ContactKind::kGeneralPrimitive, "touch", "tip_body", "box_body", 1.5, 2.5, 3.5, 4.5};
   general.render = true;
   general.law = ContactLaw::kLinear;
-  general.friction = "coulomb";
+  general.friction = Friction::kSmooth;
+  general.friction_width = 0.125;
+  general.adhesion = false;
   general.reaction = Reaction::kSurface;
   general.caps = false;
   d.contacts = {general,
@@ -151,6 +154,11 @@ TEST(WriteScene, RefusesWhatAFileCannotSay) {
   EXPECT_THROW(static_cast<void>(write_scene_text(other)), InvalidInput);
   other = d;
   other.robots[0].links[0].joint.axis = Vec3{1.0, 0.0, 0.0};
+  EXPECT_THROW(static_cast<void>(write_scene_text(other)), InvalidInput);
+  other = d;
+  other.contacts.push_back({ContactKind::kGround, {}, "a_body", ""});
+  EXPECT_NO_THROW(static_cast<void>(write_scene_text(other)));
+  other.contacts[0].friction_width = 1.0;  // of another friction
   EXPECT_THROW(static_cast<void>(write_scene_text(other)), InvalidInput);
 }
 
