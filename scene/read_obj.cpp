@@ -1,5 +1,6 @@
 #include "hbar/scene/read_obj.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 
@@ -9,6 +10,9 @@
 
 namespace hbar::scene {
 namespace {
+
+/// Sine of the angle below which two axes count as parallel.
+constexpr double kParallel = 1e-9;
 
 /// Calls `line(number, words)` for each line that has words before its comment.
 template <typename Line>
@@ -40,6 +44,36 @@ Eigen::Vector3d read_point(const std::vector<std::string_view>& words, std::size
     point[static_cast<Eigen::Index>(i)] = *value;
   }
   return point;
+}
+
+/// Reads a count, then that many lines of `word_count` words each, by `row(line, words)`.
+template <typename Row>
+void read_rows(std::string_view text, const std::string& name, std::size_t word_count,
+               const char* form, Row&& row) {
+  std::optional<int> count;
+  int found = 0;
+  int last = 1;
+  for_each_line(text, [&](int line, const std::vector<std::string_view>& words) {
+    last = line;
+    if (!count) {
+      std::string reason;
+      count = parse_integer(words[0], reason);
+      if (!count) fail(name, line, reason + "; the file begins with the number of points");
+      if (words.size() != 1 || *count < 0) {
+        fail(name, line, "the file begins with the number of points, alone in its line");
+      }
+      return;
+    }
+    if (words.size() != word_count) {
+      fail(name, line, concat("found ", words.size(), " words; a point is ", form));
+    }
+    row(line, words);
+    ++found;
+  });
+  if (!count) fail(name, last, "the file is empty; it begins with the number of points");
+  if (found != *count) {
+    fail(name, last, concat("found ", found, " points; the first line says ", *count));
+  }
 }
 
 class ObjReader {
@@ -147,33 +181,33 @@ TriangleMesh read_obj(const std::filesystem::path& path) {
 
 std::vector<Eigen::Vector3d> read_contacts_text(std::string_view text, const std::string& name) {
   std::vector<Eigen::Vector3d> points;
-  std::optional<int> count;
-  int last = 1;
-  for_each_line(text, [&](int line, const std::vector<std::string_view>& words) {
-    last = line;
-    if (!count) {
-      std::string reason;
-      count = parse_integer(words[0], reason);
-      if (!count) fail(name, line, reason + "; the file begins with the number of points");
-      if (words.size() != 1 || *count < 0) {
-        fail(name, line, "the file begins with the number of points, alone in its line");
-      }
-      return;
-    }
-    if (words.size() != 3) {
-      fail(name, line, concat("found ", words.size(), " words; a point is x y z"));
-    }
+  read_rows(text, name, 3, "x y z", [&](int line, const std::vector<std::string_view>& words) {
     points.push_back(read_point(words, 0, name, line));
   });
-  if (!count) fail(name, last, "the file is empty; it begins with the number of points");
-  if (points.size() != static_cast<std::size_t>(*count)) {
-    fail(name, last, concat("found ", points.size(), " points; the first line says ", *count));
-  }
   return points;
 }
 
 std::vector<Eigen::Vector3d> read_contacts(const std::filesystem::path& path) {
   return read_contacts_text(read_text_file(path), path.filename().string());
+}
+
+std::vector<SensorPoint> read_sensor_points_text(std::string_view text, const std::string& name) {
+  std::vector<SensorPoint> points;
+  const auto read = [&](int line, const std::vector<std::string_view>& words) {
+    const SensorPoint point = {read_point(words, 0, name, line),
+                               read_point(words, 3, name, line).stableNormalized(),
+                               read_point(words, 6, name, line).stableNormalized()};
+    if (point.axis0.cross(point.axis1).norm() < kParallel) {
+      fail(name, line, "the axes a0 and a1 are zero or parallel; they span a plane");
+    }
+    points.push_back(point);
+  };
+  read_rows(text, name, 9, "x y z, then its axes a0x a0y a0z and a1x a1y a1z", read);
+  return points;
+}
+
+std::vector<SensorPoint> read_sensor_points(const std::filesystem::path& path) {
+  return read_sensor_points_text(read_text_file(path), path.filename().string());
 }
 
 }  // namespace hbar::scene

@@ -116,5 +116,32 @@ TEST(ReadContacts, RefusesWithTheWholeMessage) {
       });
 }
 
+TEST(ReadSensorPoints, ReadsPointsWithAxesOfUnitLength) {
+  const auto points =
+      read_sensor_points_text("2\n1 2 3  2 0 0  0 0 -3\n4 5 6  0 0 1  1e-200 1e-200 0\n", "s.txt");
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[0].position, Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_EQ(points[0].axis0, Eigen::Vector3d::UnitX());
+  EXPECT_EQ(points[0].axis1, -Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR(points[1].axis1.norm(), 1.0, 1e-15);
+  EXPECT_THROW(static_cast<void>(read_sensor_points("/no/such.txt")), IoError);
+}
+
+TEST(ReadSensorPoints, RefusesWithTheWholeMessage) {
+  const std::string parallel = "bad:2: the axes a0 and a1 are zero or parallel; they span a plane";
+  expect_refused(
+      {{"no axes", "1\n1 2 3\n",
+        "bad:2: found 3 words; a point is x y z, then its axes a0x a0y a0z and a1x a1y a1z"},
+       {"not a number", "1\n1 2 3 1 0 0 0 x 0\n",
+        "bad:2: \"x\" is not a finite number; a point is 3 numbers"},
+       {"no axis", "1\n1 2 3 1 0 0 0 0 0\n", parallel},
+       {"parallel axes", "1\n1 2 3 1 0 0 -2 0 0\n", parallel},
+       {"too few points", "2\n1 2 3 1 0 0 0 1 0\n",
+        "bad:2: found 1 points; the first line says 2"}},
+      [](const std::string& text, const std::string& name) {
+        return read_sensor_points_text(text, name);
+      });
+}
+
 }  // namespace
 }  // namespace hbar::scene
