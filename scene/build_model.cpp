@@ -1,27 +1,19 @@
 #include "hbar/scene/build_model.h"
 
-#include <Eigen/Geometry>
 #include <unordered_map>
 #include <utility>
 
 #include "hbar/core/error.h"
-#include "hbar/core/mesh.h"
 #include "hbar/core/model_builder.h"
-#include "hbar/scene/principal_axes.h"
-#include "hbar/scene/read_obj.h"
+#include "hbar/scene/build_bodies.h"
+#include "hbar/scene/build_contacts.h"
+#include "hbar/scene/build_tactile.h"
 #include "hbar/scene/xml_element.h"
 
 namespace hbar::scene {
 namespace {
 
 using Pose = RigidTransform<double>;
-
-Eigen::Vector3d vector(const Vec3& v) { return {v[0], v[1], v[2]}; }
-
-Pose pose(const Vec3& pos, const Quat& quat) {
-  const Eigen::Quaterniond rotation(quat[0], quat[1], quat[2], quat[3]);
-  return {rotation.toRotationMatrix(), vector(pos)};
-}
 
 JointKind joint_kind(const Joint& joint) {
   // Axes of a WORLD joint are given in world axes; the joint frame's are R in them.
@@ -74,80 +66,9 @@ hbar::Joint make_joint(const Joint& joint, const Pose& X_WP) {
   return made;
 }
 
-/// Makes the bodies of a scene; opens the files they name.
-class BodyMaker {
- public:
-  explicit BodyMaker(const Scene& scene) : scene_(scene) {}
-
-  [[nodiscard]] hbar::Body make(const Body& body, const Pose& X_WJ) const {
-    return std::visit([&](const auto& shape) { return make(body, shape, X_WJ); }, body.shape);
-  }
-
- private:
-  static hbar::Body make(const Body& body, const CuboidBody& shape, const Pose&) {
-    return solid(body, Cuboid{vector(shape.size)});
-  }
-  static hbar::Body make(const Body& body, const SphereBody& shape, const Pose&) {
-    return solid(body, Sphere{shape.radius});
-  }
-  static hbar::Body make(const Body& body, const CylinderBody& shape, const Pose&) {
-    return solid(body, Cylinder{shape.radius, shape.length});
-  }
-  static hbar::Body make(const Body& body, const CapsuleBody& shape, const Pose&) {
-    return solid(body, Capsule{shape.radius, shape.length});
-  }
-  static hbar::Body solid(const Body& body, const Shape& shape) {
-    return solid_body(body.name, shape, body.density, pose(body.pos, body.quat));
-  }
-
-  static hbar::Body make(const Body& body, const AbstractBody& shape, const Pose&) {
-    hbar::Body made{body.name, pose(body.pos, body.quat), shape.mass, {}, NoShape{}};
-    if (shape.inertia.size() == 3) {
-      made.inertia = Eigen::Vector3d(shape.inertia[0], shape.inertia[1], shape.inertia[2]);
-      return made;
-    }
-    const PrincipalAxes principal = principal_axes(symmetric_matrix(shape.inertia));
-    made.inertia = principal.moments;
-    made.X_JB.R = made.X_JB.R * principal.axes;
-    return made;
-  }
-
-  [[nodiscard]] hbar::Body make(const Body& body, const MeshBody& shape, const Pose& X_WJ) const {
-    const SolidMoments moments = mesh_moments(body, shape);
-    const PrincipalAxes principal = principal_axes(moments.inertia);
-    const Pose X_OB = {principal.axes, moments.centre};  // in the OBJ's frame
-    Pose X_JB = pose(body.pos, body.quat);
-    if (shape.transform_type == MeshTransform::kObjToJoint) X_JB = X_JB * X_OB;
-    if (shape.transform_type == MeshTransform::kObjToWorld) X_JB = inverse(X_WJ) * X_JB * X_OB;
-    return {body.name, X_JB, body.density * moments.volume, body.density * principal.moments,
-            NoShape{}};
-  }
-
-  [[nodiscard]] SolidMoments mesh_moments(const Body& body, const MeshBody& shape) const {
-    const std::string place = attribute_place({scene_.file, {}, {}}, body.line.number, "body",
-                                              "filename", shape.filename);
-    try {
-      TriangleMesh mesh = read_obj(scene_.folder / shape.filename);
-      for (Eigen::Vector3d& point : mesh.vertices) {
-        point = point.cwiseProduct(vector(shape.scale));
-      }
-      if (!is_closed(mesh)) mesh = merge_equal_vertices(mesh);
-      check_solid(mesh);
-      return solid_moments(mesh);
-    } catch (const IoError& error) {
-      throw IoError(place + error.what());
-    } catch (const InvalidInput& error) {
-      throw InvalidInput(place + error.what());
-    }
-  }
-
-  const Scene& scene_;
-};
-
-/// Adds the links of one robot; remembers which link carries which joint.
+/// Adds the links of one robot; remembers which link carries which joint and which body.
 void add_robot(const Scene& scene, const Robot& robot, ModelBuilder& builder,
-               std::unordered_map<std::string, int>& link_of_joint) {
-  const BodyMaker bodies(scene);
+               std::unordered_map<std::string, int>& link_of_joint, BuiltBodies& bodies) {
   std::vector<Pose> X_W;  // rest pose of each joint frame in the world
   std::vector<int> index;
   for (const Link& link : robot.links) {
@@ -158,17 +79,15 @@ void add_robot(const Scene& scene, const Robot& robot, ModelBuilder& builder,
     const Pose X_WP = link.parent < 0 ? Pose{} : X_W[parent];
     hbar::Joint joint = make_joint(link.joint, X_WP);
     X_W.push_back(X_WP * joint.X_PJ);
-    hbar::Body body = bodies.make(link.body, X_W.back());
-    try {
-      index.push_back(builder.add_link(link.parent < 0 ? -1 : index[parent], std::move(joint),
-                                       std::move(body), link.name,
-                                       static_cast<unsigned>(link.design_params)));
-    } catch (const InvalidInput& error) {
-      throw InvalidInput(
-          attribute_place({scene.file, {}, {}}, link.line.number, "link", "name", link.name) +
-          error.what());
-    }
+    bodies.of_link.push_back(build_body(scene, link.body, X_W.back()));
+    with_place(
+        attribute_place({scene.file, {}, {}}, link.line.number, "link", "name", link.name), [&] {
+          index.push_back(builder.add_link(link.parent < 0 ? -1 : index[parent], std::move(joint),
+                                           bodies.of_link.back().body, link.name,
+                                           static_cast<unsigned>(link.design_params)));
+        });
     link_of_joint.emplace(link.joint.name, index.back());
+    bodies.link_of.emplace(link.body.name, index.back());
   }
 }
 
@@ -202,8 +121,9 @@ Model build_model(const Scene& scene) {
   ModelBuilder builder(description.model, metres ? Units::kMetreKilogram : Units::kCentimetreGram);
   builder.set_gravity(vector(description.options.gravity));
   std::unordered_map<std::string, int> link_of_joint;
+  BuiltBodies bodies;
   for (const Robot& robot : description.robots) {
-    add_robot(scene, robot, builder, link_of_joint);
+    add_robot(scene, robot, builder, link_of_joint, bodies);
   }
   for (const Motor& motor : description.motors) {
     builder.add_motor(make_motor(motor, link_of(link_of_joint, motor.joint)));
@@ -212,6 +132,8 @@ Model build_model(const Scene& scene) {
     builder.add_end_effector(
         {point.name.value_or(""), link_of(link_of_joint, point.joint), vector(point.pos)});
   }
+  add_contacts(scene, bodies, builder);
+  add_tactile_sensors(scene, bodies, builder);
   return builder.build();
 }
 
