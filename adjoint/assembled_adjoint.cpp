@@ -45,15 +45,21 @@ StageWeights stage_weights(Simulator& simulator, const Trajectory& trajectory,
   apply_parameters<double>(model, simulator.parameters(), trajectory.inputs.p, mechanism);
   Motion<double> motion(model.tree());
   EndEffectors<double> end_effectors(model);
+  TactileReadings<double> tactile(model);
+  Eigen::VectorXd by_rate(model.dof());
   for (int k = 0; k <= trajectory.step_count(); ++k) {
     const int s = trajectory.timeline.step_end(k);
     out.q_bar.col(s) += partials.q.col(k);
-    add_rate_weights(model, trajectory, s, partials.qdot.col(k), out);
-    if (model.variable_count() > 0) {
-      compute_motion<double>(model.tree(), mechanism, trajectory.q.col(s), none, none, motion);
+    by_rate = partials.qdot.col(k);
+    if (model.variable_count() + model.tactile_count() > 0) {
+      compute_motion<double>(model.tree(), mechanism, trajectory.q.col(s), trajectory.qdot.col(s),
+                             none, motion);
       end_effectors.pull_back(mechanism, simulator.parameters(), trajectory.inputs.p, motion,
                               partials.v.col(k), out.q_bar.col(s), out.p);
+      tactile.pull_back(mechanism, simulator.parameters(), trajectory.inputs.p, motion,
+                        partials.tactile.col(k), out.q_bar.col(s), by_rate, out.p);
     }
+    add_rate_weights(model, trajectory, s, by_rate, out);
   }
   return out;
 }

@@ -2,21 +2,6 @@
 
 namespace hbar {
 
-std::vector<std::vector<int>> tree_pattern(const Tree& tree) {
-  std::vector<std::vector<int>> pattern(static_cast<std::size_t>(tree.dof()));
-  for (int l = 0; l < tree.dof(); ++l) {
-    const int node = tree.node_of(l);
-    const auto couple = [&](int c) { pattern[static_cast<std::size_t>(c)].push_back(l); };
-    for (int c = 0; c < tree.dof(); ++c) {
-      const int other = tree.node_of(c);
-      if (tree.is_on_path(other, node) || tree.is_on_path(node, other)) {
-        couple(c);
-      }
-    }
-  }
-  return pattern;
-}
-
 BlockMatrix::BlockMatrix(int block_rows, int block_columns,
                          const std::vector<std::pair<int, int>>& blocks,
                          const std::vector<std::vector<int>>& pattern)

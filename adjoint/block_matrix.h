@@ -3,14 +3,10 @@
 #include <utility>
 #include <vector>
 
-#include "hbar/core/tree.h"
+#include "hbar/core/sparsity.h"
 #include "hbar/solvers/linear_solver.h"
 
 namespace hbar {
-
-/// Rows of a dof x dof block that can be non-zero, per column: the coordinates on the same path
-/// (branch-induced sparsity), ascending.
-[[nodiscard]] std::vector<std::vector<int>> tree_pattern(const Tree& tree);
 
 /// A matrix of zeros with a given pattern.
 ///

@@ -44,6 +44,11 @@ struct InputClass {
 /// keeps their triangle possible.
 double probe_size(const Model& model, const Parameter& parameter) {
   double size = std::abs(parameter.nominal);
+  if (parameter.kind == ParameterKind::kContactPoint) {
+    // A coordinate may well be zero: what counts is the body's extent.
+    size = model.link(parameter.owner).body.contact_points.cwiseAbs().maxCoeff();
+    return size > 0.0 ? 0.1 * size : 1.0;
+  }
   if (parameter.kind == ParameterKind::kInertia) {
     const Eigen::Vector3d& I = model.link(parameter.owner).body.inertia;
     size = std::min(size, I.sum() - 2.0 * I.maxCoeff());
@@ -186,7 +191,8 @@ class Prober {
     const Tangents tangents = tangent_->push_forward(trajectory_, directions);
     const double product = partials_->q.norm() * tangents.q.norm() +
                            partials_->qdot.norm() * tangents.qdot.norm() +
-                           partials_->v.norm() * tangents.v.norm();
+                           partials_->v.norm() * tangents.v.norm() +
+                           partials_->tactile.norm() * tangents.tactile.norm();
     const double dual_product = adjoint_norm_ * tangent_->right_hand_sides().norm();
     const double forward = directional_derivative(*partials_, tangents, directions, 0);
     return std::abs(slope - forward) / std::max({scale, product, dual_product});

@@ -22,6 +22,7 @@ struct AdjointSweep::Workspace {
         stage(s.model()),
         point(s.model()),
         end_effectors(s.model()),
+        tactile(s.model()),
         y_start{Eigen::VectorXd(s.model().dof()), Eigen::VectorXd(s.model().dof())},
         block(s.model().dof(), s.model().dof()),
         lu(s.model().dof()) {}
@@ -37,9 +38,10 @@ struct AdjointSweep::Workspace {
   StageResidual<double> stage;
   StagePoint<double> point;
   EndEffectors<double> end_effectors;
+  TactileReadings<double> tactile;
   Eigen::MatrixXd q_bar;     // ∂L/∂q per stage, so far
   Eigen::MatrixXd qdot_bar;  // ∂L/∂q̇ per stage, so far
-  Eigen::VectorXd g, y, z, residual, correction, y_qdot, y_a, by_q;
+  Eigen::VectorXd g, y, z, residual, correction, y_qdot, y_a;
   StepStart<double> y_start;
   Eigen::MatrixXd block;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu;
@@ -48,17 +50,20 @@ struct AdjointSweep::Workspace {
   int refactorized = 0;
 };
 
-/// Brings ∂Ψ/∂v at step k to the coordinates and parameters.
+/// Brings ∂Ψ/∂v and ∂Ψ/∂tactile at step k to the coordinates, rates and parameters.
 void AdjointSweep::Workspace::add_variables(const Trajectory& trajectory,
                                             const TrajectoryPartials& partials, int k,
                                             Gradient& out) {
-  if (partials.v.rows() == 0 || partials.v.col(k).isZero(0.0)) {
-    return;
+  const int s = trajectory.timeline.step_end(k);
+  const ParameterSet& set = simulator.parameters();
+  if (partials.v.rows() > 0 && !partials.v.col(k).isZero(0.0)) {
+    end_effectors.pull_back(mechanism, set, trajectory.inputs.p, stage.motion(), partials.v.col(k),
+                            q_bar.col(s), out.p);
   }
-  by_q.setZero(g.size());
-  end_effectors.pull_back(mechanism, simulator.parameters(), trajectory.inputs.p, stage.motion(),
-                          partials.v.col(k), by_q, out.p);
-  q_bar.col(trajectory.timeline.step_end(k)) += by_q;
+  if (partials.tactile.rows() > 0 && !partials.tactile.col(k).isZero(0.0)) {
+    tactile.pull_back(mechanism, set, trajectory.inputs.p, stage.motion(), partials.tactile.col(k),
+                      q_bar.col(s), qdot_bar.col(s), out.p);
+  }
 }
 
 /// z = H_ss⁻ᵀ y, refined against the exact block through its transposed product.
@@ -167,7 +172,7 @@ Gradient AdjointSweep::pull_back(const Trajectory& trajectory, const TrajectoryP
     w.sweep_stage(trajectory, s, out);
   }
   w.point.q = trajectory.q.col(0);
-  w.point.qdot.setZero();
+  w.point.qdot = trajectory.qdot.col(0);
   w.point.a.setZero();
   w.stage.linearize(w.mechanism, w.point, w.g);
   w.add_variables(trajectory, partials, 0, out);

@@ -27,7 +27,7 @@ struct Linearizer::Workspace {
         mechanism(nominal_mechanism<double>(s.model())),
         stage(s.model()),
         point(s.model()),
-        pattern(tree_pattern(s.model().tree())) {
+        pattern(residual_pattern(s.model())) {
     const int n = s.model().dof();
     for (Eigen::MatrixXd* matrix : {&G_q, &G_v, &cM, &block}) {
       matrix->setZero(n, n);

@@ -8,6 +8,7 @@ TrajectoryPartials::TrajectoryPartials(const TrajectoryValues& shape)
     : q(Eigen::MatrixXd::Zero(shape.q.rows(), shape.q.cols())),
       qdot(Eigen::MatrixXd::Zero(shape.qdot.rows(), shape.qdot.cols())),
       v(Eigen::MatrixXd::Zero(shape.v.rows(), shape.v.cols())),
+      tactile(Eigen::MatrixXd::Zero(shape.tactile.rows(), shape.tactile.cols())),
       u(Eigen::MatrixXd::Zero(shape.u.rows(), shape.u.cols())),
       p(Eigen::VectorXd::Zero(shape.p.size())) {}
 
@@ -27,8 +28,8 @@ TrajectoryPartials Objective::partials(const TrajectoryValues& values) const {
   TrajectoryPartials sum(values);
   for (const auto& term : terms_) {
     term->add_partials(values, sum);
-    if (!sum.q.allFinite() || !sum.qdot.allFinite() || !sum.v.allFinite() || !sum.u.allFinite() ||
-        !sum.p.allFinite()) {
+    if (!sum.q.allFinite() || !sum.qdot.allFinite() || !sum.v.allFinite() ||
+        !sum.tactile.allFinite() || !sum.u.allFinite() || !sum.p.allFinite()) {
       throw NumericalFailure(
           concat("objective term '", term->name(), "' gave a partial that is not finite"));
     }

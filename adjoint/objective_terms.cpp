@@ -65,6 +65,22 @@ TermPointer squared_gap(std::string name, Eigen::MatrixXd TrajectoryValues::*fie
   return user_term(name, value, add);
 }
 
+/// ½ weight Σ ‖field_k‖² over steps 1 … N.
+TermPointer squared_field(const char* name, Eigen::MatrixXd TrajectoryValues::*field,
+                          Eigen::MatrixXd TrajectoryPartials::*partial, double weight) {
+  require_weight(name, weight);
+  return user_term(
+      name,
+      [=](const TrajectoryValues& values) {
+        const Eigen::MatrixXd& all = values.*field;
+        return 0.5 * weight * all.rightCols(all.cols() - 1).squaredNorm();
+      },
+      [=](const TrajectoryValues& values, TrajectoryPartials& partials) {
+        const Eigen::Index steps = (values.*field).cols() - 1;
+        (partials.*partial).rightCols(steps) += weight * (values.*field).rightCols(steps);
+      });
+}
+
 }  // namespace
 
 TermPointer user_term(std::string name, Value value, AddPartials add_partials) {
@@ -72,16 +88,12 @@ TermPointer user_term(std::string name, Value value, AddPartials add_partials) {
 }
 
 TermPointer squared_variables(double weight) {
-  require_weight("squared_variables", weight);
-  return user_term(
-      "squared_variables",
-      [weight](const TrajectoryValues& values) {
-        return 0.5 * weight * values.v.rightCols(values.v.cols() - 1).squaredNorm();
-      },
-      [weight](const TrajectoryValues& values, TrajectoryPartials& partials) {
-        const Eigen::Index steps = values.v.cols() - 1;
-        partials.v.rightCols(steps) += weight * values.v.rightCols(steps);
-      });
+  return squared_field("squared_variables", &TrajectoryValues::v, &TrajectoryPartials::v, weight);
+}
+
+TermPointer squared_tactile(double weight) {
+  return squared_field("squared_tactile", &TrajectoryValues::tactile, &TrajectoryPartials::tactile,
+                       weight);
 }
 
 TermPointer squared_final_position(double weight) {

@@ -9,6 +9,9 @@ using TermPointer = std::shared_ptr<const ObjectiveTerm>;
 /// ½ weight Σ_{k=1…N} ‖v_k‖² over all auxiliary variables.
 [[nodiscard]] TermPointer squared_variables(double weight = 1.0);
 
+/// ½ weight Σ_{k=1…N} ‖tactile_k‖² over all sensor readings.
+[[nodiscard]] TermPointer squared_tactile(double weight = 1.0);
+
 /// ½ weight ‖q_N‖².
 [[nodiscard]] TermPointer squared_final_position(double weight = 1.0);
 

@@ -46,6 +46,9 @@ class Simulator::StageSystem final : public solvers::NewtonSystem {
   }
   void solve(const Eigen::VectorXd& g, Eigen::VectorXd& dx) override { dx = lu.solve(g); }
 
+  /// Of the last evaluation.
+  [[nodiscard]] const ContactForces<double>& contacts() const { return stage_.contacts(); }
+
  private:
   void set(const Eigen::VectorXd& x) {
     point.q = x;
@@ -76,7 +79,9 @@ struct Simulator::Workspace {
         x(model.dof()),
         last_a(model.dof()),
         motion(model.tree()),
-        end_effectors(model) {}
+        end_effectors(model),
+        tactile(model),
+        contacts(model) {}
 
   Mechanism<double> mechanism;
   History history;
@@ -86,6 +91,8 @@ struct Simulator::Workspace {
   Eigen::VectorXd last_a;  // of the stage that was solved last
   Motion<double> motion;
   EndEffectors<double> end_effectors;
+  TactileReadings<double> tactile;
+  ContactForces<double> contacts;
 };
 
 Simulator::Simulator(Model model, ParameterSet parameters, SimulationOptions options)
@@ -226,6 +233,24 @@ bool Simulator::advance(Trajectory& trajectory, int step, double h, int depth,
   return true;
 }
 
+/// ", deepest contact 'a-b': …" at the last iterate; empty where nothing touches.
+std::string Simulator::deepest_contact() const {
+  const ContactForces<double>& contacts = work_->system.contacts();
+  int deepest = -1;
+  for (int i = 0; i < model_->contact_count(); ++i) {
+    if (contacts.summary(i).active > 0 &&
+        (deepest < 0 || contacts.summary(i).penetration > contacts.summary(deepest).penetration)) {
+      deepest = i;
+    }
+  }
+  if (deepest < 0) {
+    return {};
+  }
+  const ContactSummary& summary = contacts.summary(deepest);
+  return concat(", deepest contact '", model_->contact(deepest).name, "' with ", summary.active,
+                " points down to ", summary.penetration, ' ', length_unit(model_->units()));
+}
+
 std::string Simulator::failure_message(const Trajectory& trajectory, int step,
                                        const RolloutReport& report) const {
   const solvers::NewtonReport& newton = report.last_newton;
@@ -234,9 +259,9 @@ std::string Simulator::failure_message(const Trajectory& trajectory, int step,
                 "): ", solvers::describe(newton.status), " after ", newton.iterations,
                 " iterations, |g| = ", newton.residual, " (tol ", options_.newton.tol,
                 "), largest correction in coordinate '", model_->coordinate_name(newton.worst),
-                "', smallest time step tried ", report.smallest_h,
-                "; try a smaller time step, softer springs, limits or motor gains, or a larger "
-                "Newton tolerance");
+                "', smallest time step tried ", report.smallest_h, deepest_contact(),
+                "; try a smaller time step, softer springs, limits, contacts or motor gains, or a "
+                "larger Newton tolerance");
 }
 
 Rollout Simulator::rollout(const Inputs& inputs) {
@@ -299,6 +324,7 @@ TrajectoryValues Simulator::values(const Trajectory& trajectory) {
   out.q.resize(model_->dof(), steps + 1);
   out.qdot.resize(model_->dof(), steps + 1);
   out.v.resize(model_->variable_count(), steps + 1);
+  out.tactile.resize(model_->tactile_count(), steps + 1);
   out.u = trajectory.inputs.u.leftCols(steps);
   out.p = trajectory.inputs.p;
   apply_parameters<double>(*model_, parameters_, trajectory.inputs.p, work_->mechanism);
@@ -306,10 +332,27 @@ TrajectoryValues Simulator::values(const Trajectory& trajectory) {
   for (int k = 0; k <= steps; ++k) {
     out.q.col(k) = trajectory.q_at_step(k);
     out.qdot.col(k) = trajectory.qdot_at_step(k);
-    if (model_->variable_count() > 0) {
-      compute_motion<double>(model_->tree(), work_->mechanism, out.q.col(k), none, none,
+    if (model_->variable_count() + model_->tactile_count() > 0) {
+      compute_motion<double>(model_->tree(), work_->mechanism, out.q.col(k), out.qdot.col(k), none,
                              work_->motion);
       work_->end_effectors.positions(work_->motion, out.v.col(k));
+      work_->tactile.readings(work_->mechanism, work_->motion, out.tactile.col(k));
+    }
+  }
+  return out;
+}
+
+std::vector<std::vector<ContactSummary>> Simulator::contact_history(const Trajectory& trajectory) {
+  apply_parameters<double>(*model_, parameters_, trajectory.inputs.p, work_->mechanism);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(model_->dof());
+  std::vector<std::vector<ContactSummary>> out;
+  for (int k = 0; k <= trajectory.step_count(); ++k) {
+    compute_motion<double>(model_->tree(), work_->mechanism, trajectory.q_at_step(k),
+                           trajectory.qdot_at_step(k), none, work_->motion);
+    work_->contacts.evaluate(work_->mechanism, work_->motion);
+    out.emplace_back();
+    for (int i = 0; i < model_->contact_count(); ++i) {
+      out.back().push_back(work_->contacts.summary(i));
     }
   }
   return out;

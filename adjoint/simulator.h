@@ -7,6 +7,7 @@
 #include "hbar/adjoint/history.h"
 #include "hbar/core/end_effectors.h"
 #include "hbar/core/parameters.h"
+#include "hbar/core/tactile.h"
 
 namespace hbar {
 
@@ -57,12 +58,13 @@ class [[nodiscard]] Rollout {
 
 /// What objectives, constraints and result files read. Time runs along columns, k = 0 … N.
 struct TrajectoryValues {
-  double h = 0.0;        ///< nominal time step
-  Eigen::MatrixXd q;     ///< rad or length                               [dof x N+1]
-  Eigen::MatrixXd qdot;  ///<                                             [dof x N+1]
-  Eigen::MatrixXd v;     ///< auxiliary variables, length                 [variables x N+1]
-  Eigen::MatrixXd u;     ///< controls                                    [controls x N]
-  Eigen::VectorXd p;     ///< design parameters                           [parameters]
+  double h = 0.0;           ///< nominal time step
+  Eigen::MatrixXd q;        ///< rad or length                               [dof x N+1]
+  Eigen::MatrixXd qdot;     ///<                                             [dof x N+1]
+  Eigen::MatrixXd v;        ///< auxiliary variables, length                 [variables x N+1]
+  Eigen::MatrixXd tactile;  ///< sensor readings, force                   [readings x N+1]
+  Eigen::MatrixXd u;        ///< controls                                    [controls x N]
+  Eigen::VectorXd p;        ///< design parameters                           [parameters]
 };
 
 /// Solves ḡ(q̄, p) = 0 stage by stage: the forward simulation.
@@ -88,6 +90,10 @@ class Simulator {
   /// The values at the steps' ends of a trajectory of this simulator.
   [[nodiscard]] TrajectoryValues values(const Trajectory& trajectory);
 
+  /// What each contact did at the steps' ends: [step 0 … N][contact].
+  [[nodiscard]] std::vector<std::vector<ContactSummary>> contact_history(
+      const Trajectory& trajectory);
+
   /// Sets `point` to a stage of a trajectory.
   void set_point(const Trajectory& trajectory, int stage, StagePoint<double>& point);
 
@@ -105,6 +111,7 @@ class Simulator {
   bool advance(Trajectory& trajectory, int step, double h, int depth, RolloutReport& report);
   bool solve_stage(Trajectory& trajectory, int stage, RolloutReport& report);
   void switch_charts(Trajectory& trajectory) const;
+  [[nodiscard]] std::string deepest_contact() const;
   [[nodiscard]] std::string failure_message(const Trajectory& trajectory, int step,
                                             const RolloutReport& report) const;
   [[nodiscard]] double bytes_per_stage(bool with_factors) const;

@@ -52,6 +52,50 @@ class VariableTangent {
   EndEffectors<double> end_effectors_;
 };
 
+/// Derivatives of the sensor readings along one direction at a time, by dual numbers.
+class TactileTangent {
+ public:
+  TactileTangent(Simulator& simulator, const Inputs& inputs, const Eigen::MatrixXd& dp)
+      : model_(simulator.model()),
+        motion_(model_.tree()),
+        readings_(model_),
+        none_(VectorX<Dual>::Zero(model_.dof())),
+        out_(VectorX<Dual>::Zero(model_.tactile_count())) {
+    for (Eigen::Index i = 0; i < dp.cols(); ++i) {
+      mechanisms_.push_back(nominal_mechanism<Dual>(model_));
+      apply_parameters<Dual>(model_, simulator.parameters(), dual(inputs.p, dp.col(i)),
+                             mechanisms_.back());
+    }
+  }
+
+  void at(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, const Eigen::MatrixXd& dq,
+          const Eigen::MatrixXd& dqdot, Eigen::Ref<Eigen::MatrixXd> out) {
+    for (Eigen::Index i = 0; i < dq.cols(); ++i) {
+      const Mechanism<Dual>& mechanism = mechanisms_[static_cast<std::size_t>(i)];
+      compute_motion<Dual>(model_.tree(), mechanism, dual(q, dq.col(i)), dual(qdot, dqdot.col(i)),
+                           none_, motion_);
+      readings_.readings(mechanism, motion_, out_);
+      out.col(i) = out_.unaryExpr([](const Dual& reading) { return reading.slope; });
+    }
+  }
+
+ private:
+  static VectorX<Dual> dual(const Eigen::VectorXd& value, const Eigen::VectorXd& slope) {
+    VectorX<Dual> out(value.size());
+    for (Eigen::Index i = 0; i < value.size(); ++i) {
+      out[i] = {value[i], slope[i]};
+    }
+    return out;
+  }
+
+  const Model& model_;
+  std::vector<Mechanism<Dual>> mechanisms_;  // per direction
+  Motion<Dual> motion_;
+  TactileReadings<Dual> readings_;
+  VectorX<Dual> none_;
+  VectorX<Dual> out_;
+};
+
 /// δq̇ of a stage from δq of the stages it looks back on.
 Eigen::MatrixXd rate_tangent(const Model& model, const Trajectory& trajectory, int s,
                              const Eigen::MatrixXd& dq, const Eigen::MatrixXd& dqdot0) {
@@ -120,6 +164,10 @@ Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directio
   out.q.resize((steps + 1) * n, directions.count());
   out.qdot.resize((steps + 1) * n, directions.count());
   out.v.resize((steps + 1) * model.variable_count(), directions.count());
+  const int readings = model.tactile_count();
+  out.tactile.resize((steps + 1) * readings, directions.count());
+  TactileTangent tactile(simulator_, trajectory.inputs,
+                         readings > 0 ? directions.p : Eigen::MatrixXd());
   VariableTangent variables(simulator_);
   variables.set_parameters(trajectory.inputs.p);
   for (int k = 0; k <= steps; ++k) {
@@ -130,6 +178,10 @@ Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directio
       out.v.middleRows(k * model.variable_count(), model.variable_count()) = variables.at(
           trajectory.inputs, trajectory.q.col(s), dq.middleRows(s * n, n), directions.p);
     }
+    if (readings > 0) {
+      tactile.at(trajectory.q.col(s), trajectory.qdot.col(s), dq.middleRows(s * n, n),
+                 out.qdot.middleRows(k * n, n), out.tactile.middleRows(k * readings, readings));
+    }
   }
   return out;
 }
@@ -139,6 +191,7 @@ double directional_derivative(const TrajectoryPartials& partials, const Tangents
   return partials.q.reshaped().dot(tangents.q.col(i)) +
          partials.qdot.reshaped().dot(tangents.qdot.col(i)) +
          partials.v.reshaped().dot(tangents.v.col(i)) +
+         partials.tactile.reshaped().dot(tangents.tactile.col(i)) +
          partials.u.reshaped().dot(directions.u.col(i)) + partials.p.dot(directions.p.col(i));
 }
 

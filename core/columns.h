@@ -41,6 +41,9 @@ class Columns {
     project(tree, motion, dynamics, weights, jacobian);
   }
 
+  /// Ψ̇ of coordinate c, after prepare.                                           [6]
+  [[nodiscard]] Vector6<S> psi_dot(int c) const { return psi_dot_.col(c); }
+
  private:
   std::vector<std::vector<CoordinateRange>> below_;  // per node: its coordinates, its descendants'
   Matrix6X<S> psi_dot_;                              // by q_c

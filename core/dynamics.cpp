@@ -36,7 +36,8 @@ Dynamics<S>::Dynamics(const Model& model)
 
 template <Scalar S>
 void inverse_dynamics(const Model& model, const Mechanism<S>& mechanism, const Motion<S>& motion,
-                      Dynamics<S>& dynamics, Eigen::Ref<VectorX<S>> tau) {
+                      Dynamics<S>& dynamics, Eigen::Ref<VectorX<S>> tau,
+                      std::span<const Vector6<S>> wrenches) {
   const Tree& tree = model.tree();
   for (int i = 0; i < tree.node_count(); ++i) {
     const Node& node = tree.node(i);
@@ -45,6 +46,9 @@ void inverse_dynamics(const Model& model, const Mechanism<S>& mechanism, const M
       const NodeMotion<S>& self = motion.at(i);
       const SpatialInertia<S> I = world_inertia(mechanism, self, node.link);
       F = momentum_rate<S>(I, self, I * self.V);
+      if (!wrenches.empty()) {
+        F -= wrenches[static_cast<std::size_t>(node.link)];
+      }
     } else {
       F.setZero();
     }
@@ -61,7 +65,8 @@ void inverse_dynamics(const Model& model, const Mechanism<S>& mechanism, const M
 
 template <Scalar S>
 void subtree_dynamics(const Model& model, const Mechanism<S>& mechanism, const Motion<S>& motion,
-                      Dynamics<S>& dynamics, Eigen::Ref<VectorX<S>> tau) {
+                      Dynamics<S>& dynamics, Eigen::Ref<VectorX<S>> tau,
+                      std::span<const Vector6<S>> wrenches) {
   const Tree& tree = model.tree();
   for (int i = 0; i < tree.node_count(); ++i) {
     const Node& node = tree.node(i);
@@ -72,6 +77,9 @@ void subtree_dynamics(const Model& model, const Mechanism<S>& mechanism, const M
       body.I = world_inertia(mechanism, self, node.link);
       const Vector6<S> momentum = body.I * self.V;
       body.F = momentum_rate<S>(body.I, self, momentum);
+      if (!wrenches.empty()) {
+        body.F -= wrenches[static_cast<std::size_t>(node.link)];
+      }
       body.B = coriolis_operator<S>(body.I, self.V, momentum);
       below = body;
     } else {
@@ -124,9 +132,11 @@ void mass_matrix(const Model& model, const Motion<S>& motion, const Dynamics<S>&
 #define HBAR_INSTANTIATE(S)                                                           \
   template struct Dynamics<S>;                                                        \
   template void inverse_dynamics(const Model&, const Mechanism<S>&, const Motion<S>&, \
-                                 Dynamics<S>&, Eigen::Ref<VectorX<S>>);               \
+                                 Dynamics<S>&, Eigen::Ref<VectorX<S>>,                \
+                                 std::span<const Vector6<S>>);                        \
   template void subtree_dynamics(const Model&, const Mechanism<S>&, const Motion<S>&, \
-                                 Dynamics<S>&, Eigen::Ref<VectorX<S>>);               \
+                                 Dynamics<S>&, Eigen::Ref<VectorX<S>>,                \
+                                 std::span<const Vector6<S>>);                        \
   template void mass_matrix(const Model&, const Motion<S>&, const Dynamics<S>&,       \
                             Eigen::Ref<MatrixX<S>>);
 HBAR_INSTANTIATE(double)

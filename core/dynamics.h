@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "hbar/core/motion.h"
 
 namespace hbar {
@@ -9,7 +11,7 @@ template <Scalar S>
 struct BodyDynamics {
   SpatialInertia<S> I;    ///< mass distribution
   CoriolisOperator<S> B;  ///< velocity-dependent operator
-  Vector6<S> F;           ///< rate of momentum, a wrench                       [6]
+  Vector6<S> F;           ///< rate of momentum less outer forces, a wrench     [6]
 };
 
 /// Backward pass of formulation §2: body quantities per link and their sums over the subtree of
@@ -34,16 +36,20 @@ struct Dynamics {
 /// Inverse dynamics: the generalised forces that give accelerations a (recursive Newton-Euler),
 /// with the accelerations and velocities that `motion` was computed at.
 ///
-/// @param tau  ID(q, q̇, a; p), torque or force                                  [dof]
+/// @param tau       ID(q, q̇, a; p), torque or force                             [dof]
+/// @param wrenches  forces on bodies, per link, world; each is subtracted from its body's F, so
+///                  that tau is what joints must do besides; empty: none            n of [6]
 /// Allocates nothing.
 template <Scalar S>
 void inverse_dynamics(const Model& model, const Mechanism<S>& mechanism, const Motion<S>& motion,
-                      Dynamics<S>& dynamics, Eigen::Ref<VectorX<S>> tau);
+                      Dynamics<S>& dynamics, Eigen::Ref<VectorX<S>> tau,
+                      std::span<const Vector6<S>> wrenches = {});
 
 /// The same, and all subtree sums that derivatives need.
 template <Scalar S>
 void subtree_dynamics(const Model& model, const Mechanism<S>& mechanism, const Motion<S>& motion,
-                      Dynamics<S>& dynamics, Eigen::Ref<VectorX<S>> tau);
+                      Dynamics<S>& dynamics, Eigen::Ref<VectorX<S>> tau,
+                      std::span<const Vector6<S>> wrenches = {});
 
 /// Mass matrix M(q) of (30), after subtree_dynamics.
 ///

@@ -1,5 +1,7 @@
 #include "hbar/core/mechanism.h"
 
+#include <algorithm>
+
 namespace hbar {
 namespace {
 
@@ -11,10 +13,15 @@ RigidTransform<S> cast(const RigidTransform<double>& X) {
 }  // namespace
 
 template <Scalar S>
-void Mechanism<S>::update_inertia() {
+void Mechanism<S>::update_derived() {
   for (std::size_t i = 0; i < inertia.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     inertia[i] = body_inertia<S>(mass[k], moments.col(k), X_JB[i]);
+    double squared = 0.0;
+    for (const auto& point : contact_points[i].colwise()) {
+      squared = std::max(squared, value_of(S(point.squaredNorm())));
+    }
+    contact_radius[k] = std::sqrt(squared);
   }
 }
 
@@ -27,6 +34,10 @@ Mechanism<S> nominal_mechanism(const Model& model) {
   m.moments.resize(3, links);
   m.stiffness.resize(links);
   m.damping.resize(links);
+  m.sizes.setZero(3, links);
+  m.contact_scale.setOnes(links);
+  m.contact_radius.setZero(links);
+  m.contact_coefficients.resize(4, model.contact_count());
   m.motor_P.resize(motors);
   m.motor_D.resize(motors);
   m.gravity = model.gravity().cast<S>();
@@ -38,14 +49,23 @@ Mechanism<S> nominal_mechanism(const Model& model) {
     m.moments.col(i) = link.body.inertia.cast<S>();
     m.stiffness[i] = link.joint.stiffness;
     m.damping[i] = link.joint.damping;
+    const std::vector<double> sizes = sizes_of(link.body.shape);
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+      m.sizes(static_cast<Eigen::Index>(k), i) = sizes[k];
+    }
+    m.contact_points.push_back(link.body.contact_points.cast<S>());
   }
   for (Eigen::Index i = 0; i < motors; ++i) {
     const Motor& motor = model.motors()[static_cast<std::size_t>(i)];
     m.motor_P[i] = motor.P;
     m.motor_D[i] = motor.D;
   }
+  for (int i = 0; i < model.contact_count(); ++i) {
+    const ContactCoefficients& c = model.contact(i).coefficients;
+    m.contact_coefficients.col(i) = Eigen::Vector4d(c.kn, c.kt, c.mu, c.damping).cast<S>();
+  }
   m.inertia.resize(static_cast<std::size_t>(links));
-  m.update_inertia();
+  m.update_derived();
   return m;
 }
 

@@ -20,11 +20,16 @@ struct Mechanism {
   VectorX<S> damping;                           ///< per link                             [links]
   VectorX<S> motor_P;                           ///< per motor                            [motors]
   VectorX<S> motor_D;                           ///< per motor                            [motors]
-  Vector3<S> gravity;                           ///< in the world frame, length/time²     [3]
-  std::vector<SpatialInertia<S>> inertia;       ///< per link: of the body, from the joint frame
+  Eigen::Matrix<S, 3, Eigen::Dynamic> sizes;    ///< per link: sizes_of its shape     [3 x links]
+  VectorX<S> contact_scale;                     ///< s per link                           [links]
+  Eigen::Matrix<S, 4, Eigen::Dynamic> contact_coefficients;  ///< k_n, k_t, μ, k_d [4 x contacts]
+  std::vector<Eigen::Matrix<S, 3, Eigen::Dynamic>> contact_points;  ///< per link [3 x points]
+  Eigen::VectorXd contact_radius;  ///< per link: bound on |contact point|            [links]
+  Vector3<S> gravity;              ///< in the world frame, length/time²     [3]
+  std::vector<SpatialInertia<S>> inertia;  ///< per link: of the body, from the joint frame
 
-  /// Recomputes `inertia` after mass, moments or X_JB have changed.
-  void update_inertia();
+  /// Recomputes `inertia` and `contact_radius` after what they follow from has changed.
+  void update_derived();
 };
 
 /// The mechanism whose parameters are the model's own.

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hbar/core/contact.h"
 #include "hbar/core/joint.h"
 #include "hbar/core/shape.h"
 #include "hbar/core/tree.h"
@@ -21,10 +22,12 @@ struct Body {
   double mass = 0.0;                                  ///< mass, > 0
   Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  ///< principal moments, mass·length²  [3]
   Shape shape = NoShape{};
+  Eigen::Matrix3Xd contact_points = {};  ///< in the body frame, length              [3 x points]
 
   friend bool operator==(const Body& a, const Body& b) {
     return a.name == b.name && a.X_JB == b.X_JB && a.mass == b.mass && a.inertia == b.inertia &&
-           a.shape == b.shape;
+           a.shape == b.shape && a.contact_points.cols() == b.contact_points.cols() &&
+           a.contact_points == b.contact_points;
   }
 };
 
@@ -32,10 +35,10 @@ struct Body {
 enum DesignMask : unsigned {
   kMaskJointTransform = 1,     ///< I
   kMaskBodyTransform = 2,      ///< II
-  kMaskContactPoints = 4,      ///< III (reserved)
+  kMaskContactPoints = 4,      ///< III
   kMaskMassInertia = 8,        ///< IV
   kMaskStiffnessDamping = 16,  ///< V
-  kMaskContactScale = 32,      ///< VI (reserved)
+  kMaskContactScale = 32,      ///< VI
   kMaskAll = 63
 };
 
@@ -75,7 +78,8 @@ struct EndEffector {
   }
 };
 
-/// A mechanism: trees of links, motors, end effectors. Immutable; made by ModelBuilder.
+/// A mechanism: trees of links, motors, contacts, end effectors, sensors. Immutable; made by
+/// ModelBuilder.
 ///
 /// Thread-safe: every member function is const.
 class Model {
@@ -86,6 +90,13 @@ class Model {
   [[nodiscard]] const std::vector<Link>& links() const { return links_; }
   [[nodiscard]] const std::vector<Motor>& motors() const { return motors_; }
   [[nodiscard]] const std::vector<EndEffector>& end_effectors() const { return end_effectors_; }
+  [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
+  [[nodiscard]] const Contact& contact(int i) const {
+    return contacts_[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] const std::vector<TactileSensor>& tactile_sensors() const {
+    return tactile_sensors_;
+  }
   [[nodiscard]] const Tree& tree() const { return tree_; }
 
   [[nodiscard]] int dof() const { return tree_.dof(); }               ///< n_r, coordinates
@@ -93,6 +104,8 @@ class Model {
   [[nodiscard]] int variable_count() const {  ///< n_v, three per end effector
     return 3 * static_cast<int>(end_effectors_.size());
   }
+  [[nodiscard]] int tactile_count() const { return tactile_count_; }  ///< three per sensor point
+  [[nodiscard]] int contact_count() const { return static_cast<int>(contacts_.size()); }
   [[nodiscard]] int link_count() const { return static_cast<int>(links_.size()); }
   [[nodiscard]] const Link& link(int i) const { return links_[static_cast<std::size_t>(i)]; }
 
@@ -120,7 +133,8 @@ class Model {
 
   friend bool operator==(const Model& a, const Model& b) {
     return a.name_ == b.name_ && a.units_ == b.units_ && a.gravity_ == b.gravity_ &&
-           a.links_ == b.links_ && a.motors_ == b.motors_ && a.end_effectors_ == b.end_effectors_;
+           a.links_ == b.links_ && a.motors_ == b.motors_ && a.end_effectors_ == b.end_effectors_ &&
+           a.contacts_ == b.contacts_ && a.tactile_sensors_ == b.tactile_sensors_;
   }
 
  private:
@@ -132,10 +146,13 @@ class Model {
   std::vector<Link> links_;
   std::vector<Motor> motors_;
   std::vector<EndEffector> end_effectors_;
+  std::vector<Contact> contacts_;
+  std::vector<TactileSensor> tactile_sensors_;
   Tree tree_;
   std::vector<int> node_of_link_;
   std::vector<int> first_control_;
   int control_count_ = 0;
+  int tactile_count_ = 0;
 };
 
 /// Words for units of quantities in a unit system: "m", "kg", "kg·m²", … (see parameters.h).

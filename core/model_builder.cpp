@@ -83,6 +83,64 @@ void check_body(const Body& body) {
   require(2.0 * I.maxCoeff() <= I.sum() + tolerance,
           concat(where, ": principal moments are (", I.transpose(),
                  "); none may exceed the sum of the other two"));
+  require(body.contact_points.allFinite(), where + ": its contact points must be finite");
+}
+
+void check_coefficients(const ContactCoefficients& c, const std::string& where) {
+  for (const auto& [value, name] : {std::pair{c.kn, "kn"}, std::pair{c.kt, "kt"},
+                                    std::pair{c.mu, "mu"}, std::pair{c.damping, "damping"}}) {
+    require(value >= 0.0 && std::isfinite(value),
+            concat(where, ": ", name, " is ", value, "; it must be ≥ 0 and finite"));
+  }
+}
+
+void check_surface(const Model& model, const Contact& contact, const std::string& where) {
+  using Field = std::shared_ptr<const DistanceField>;
+  if (const auto* plane = std::get_if<Plane>(&contact.surface)) {
+    require(plane->point.allFinite() && std::abs(plane->normal.norm() - 1.0) < 1e-9,
+            where + ": a plane needs a finite point and a normal of length 1");
+    return;
+  }
+  require(contact.other != -1, where + ": the world touches as a plane only");
+  if (const auto* field = std::get_if<Field>(&contact.surface)) {
+    require(*field != nullptr, where + ": the distance field is null");
+    return;
+  }
+  const Body& other = model.link(contact.other).body;
+  require(!std::holds_alternative<NoShape>(other.shape),
+          concat(where, ": body '", other.name,
+                 "' has no shape of its own; give a plane or a distance field"));
+}
+
+void check_contact(const Model& model, const Contact& contact) {
+  const std::string where = concat("contact '", contact.name, "'");
+  const Body& body = model.link(contact.link).body;
+  require(contact.link != contact.other, where + ": a body cannot touch itself");
+  check_surface(model, contact, where);
+  const bool rolls =
+      std::holds_alternative<Plane>(contact.surface) && std::holds_alternative<Sphere>(body.shape);
+  require(body.contact_points.cols() > 0 || rolls,
+          concat(where, ": body '", body.name,
+                 "' has no contact points (see surface_points; a ball needs none against a "
+                 "plane)"));
+  check_coefficients(contact.coefficients, where);
+  require(contact.friction_law != FrictionLaw::kSmooth ||
+              (contact.friction_width > 0.0 && std::isfinite(contact.friction_width)),
+          concat(where, ": friction width is ", contact.friction_width,
+                 "; the smooth law needs it > 0"));
+}
+
+void check_tactile_sensor(const TactileSensor& sensor) {
+  const std::string where = concat("tactile sensor '", sensor.name, "'");
+  const Eigen::Index count = sensor.points.cols();
+  require(count > 0 && sensor.points.allFinite(), where + ": it needs points, all finite");
+  for (const Eigen::Matrix3Xd* axes : {&sensor.axis0, &sensor.axis1}) {
+    require(axes->cols() == count,
+            concat(where, ": ", axes->cols(), " axes for ", count, " points"));
+    require((axes->colwise().norm().array() - 1.0).abs().maxCoeff() < 1e-9,
+            where + ": axes must have length 1");
+  }
+  check_coefficients(sensor.coefficients, where);
 }
 
 }  // namespace
@@ -169,6 +227,40 @@ int ModelBuilder::add_end_effector(EndEffector end_effector) {
   require(end_effector.position.allFinite(),
           concat("end effector '", end_effector.name, "': position must be finite"));
   model_.end_effectors_.push_back(std::move(end_effector));
+  return static_cast<int>(index);
+}
+
+int ModelBuilder::add_contact(Contact contact) {
+  check_link_index(contact.link, "contact, points");
+  if (contact.other != -1) {
+    check_link_index(contact.other, "contact, other body");
+  }
+  if (contact.name.empty()) {
+    contact.name =
+        concat(model_.link(contact.link).body.name, '-',
+               contact.other == -1 ? std::string("ground") : model_.link(contact.other).body.name);
+    const std::string base = contact.name;
+    for (int i = 2; contact_names_.contains(contact.name); ++i) {
+      contact.name = concat(base, '-', i);
+    }
+  }
+  require(!contact_names_.contains(contact.name),
+          concat("contact '", contact.name, "': this name is taken"));
+  check_contact(model_, contact);
+  contact_names_.insert(contact.name);
+  model_.contacts_.push_back(std::move(contact));
+  return model_.contact_count() - 1;
+}
+
+int ModelBuilder::add_tactile_sensor(TactileSensor sensor) {
+  check_link_index(sensor.link, "tactile sensor");
+  const std::size_t index = model_.tactile_sensors_.size();
+  if (sensor.name.empty()) {
+    sensor.name = concat("tactile", index);
+  }
+  check_tactile_sensor(sensor);
+  model_.tactile_count_ += 3 * static_cast<int>(sensor.points.cols());
+  model_.tactile_sensors_.push_back(std::move(sensor));
   return static_cast<int>(index);
 }
 

@@ -38,6 +38,13 @@ class ModelBuilder {
   /// Adds an end effector; returns its index. An empty name becomes "endeffector<index>".
   int add_end_effector(EndEffector end_effector);
 
+  /// Declares a contact; returns its index. An empty name becomes "POINTS_BODY-OTHER_BODY"
+  /// ("-ground" for the world), numbered where that is taken.
+  int add_contact(Contact contact);
+
+  /// Adds a tactile sensor; returns its index. An empty name becomes "tactile<index>".
+  int add_tactile_sensor(TactileSensor sensor);
+
   /// Pose of a link's joint frame in the world when every coordinate is zero.
   [[nodiscard]] RigidTransform<double> rest_pose(int link) const;
 
@@ -51,6 +58,7 @@ class ModelBuilder {
   std::unordered_set<std::string> link_names_;
   std::unordered_set<std::string> joint_names_;
   std::unordered_set<std::string> body_names_;
+  std::unordered_set<std::string> contact_names_;
 };
 
 /// A homogeneous solid body.

@@ -1,5 +1,6 @@
 #include "hbar/core/parameter_derivatives.h"
 
+#include "hbar/core/contact_parameters.h"
 #include "hbar/core/rotation.h"
 
 namespace hbar {
@@ -70,6 +71,33 @@ InertiaWrenches<S> inertia_wrenches(const Model& model, const Mechanism<S>& mech
   return out;
 }
 
+/// ∂F of a link's body by one inertial parameter: mass and moments at nominal sizes, or a size.
+template <Scalar S>
+Vector6<S> inertial_wrench(const Model& model, const Mechanism<S>& mechanism,
+                           const InertiaWrenches<S>& wrenches, const ParameterBlock& block, int k,
+                           const S& value) {
+  const int link = block.owner;
+  if (block.kind == ParameterKind::kMass) {
+    // The mechanism's mass is the parameter's times what sizes make of it; so are the moments.
+    return (mechanism.mass[link] / value) * wrenches.by_mass;
+  }
+  if (block.kind == ParameterKind::kInertia) {
+    return (mechanism.moments(k, link) / value) * wrenches.by_moment[static_cast<std::size_t>(k)];
+  }
+  Vector3<Dual> sizes;
+  for (int i = 0; i < 3; ++i) {
+    sizes[i] = {value_of(mechanism.sizes(i, link)), i == k ? 1.0 : 0.0};
+  }
+  const UnitSolid<Dual> solid = unit_solid<Dual>(model.link(link).body.shape, sizes);
+  const auto growth = [](const Dual& x) { return x.slope / x.value; };
+  Vector6<S> out = (mechanism.mass[link] * growth(solid.mass)) * wrenches.by_mass;
+  for (int i = 0; i < 3; ++i) {
+    out += (mechanism.moments(i, link) * growth(solid.moments[i])) *
+           wrenches.by_moment[static_cast<std::size_t>(i)];
+  }
+  return out;
+}
+
 /// Visits the coordinates and controls of a motor: f(coordinate, control).
 template <typename F>
 void for_each_drive(const Model& model, int motor, const F& f) {
@@ -124,16 +152,20 @@ void add_parameter_gradient(const Mechanism<S>& mechanism, const ParameterSet& s
         break;
       }
       case ParameterKind::kMass:
-      case ParameterKind::kInertia: {
+      case ParameterKind::kInertia:
+      case ParameterKind::kSize: {
         const auto wrenches = inertia_wrenches<S>(model, mechanism, motion, block.owner);
         const Vector6<S>& W = pullback.twist(model.node_of_link(block.owner));
         for (int i = block.first; i < block.first + block.size; ++i) {
-          const auto k = static_cast<std::size_t>(set[i].component);
-          grad[i] += scale * W.dot(block.kind == ParameterKind::kMass ? wrenches.by_mass
-                                                                      : wrenches.by_moment[k]);
+          grad[i] += scale * W.dot(inertial_wrench<S>(model, mechanism, wrenches, block,
+                                                      set[i].component, p[i]));
         }
         break;
       }
+      case ParameterKind::kContactPoint:
+      case ParameterKind::kContactScale:
+      case ParameterKind::kContactCoefficient:
+        break;  // by for_each_contact_change, below
       case ParameterKind::kStiffness:
       case ParameterKind::kDamping: {
         const VectorX<S>& by =
@@ -158,46 +190,10 @@ void add_parameter_gradient(const Mechanism<S>& mechanism, const ParameterSet& s
         break;
     }
   }
-}
-
-std::vector<int> parameter_rows(const Model& model, const ParameterBlock& block) {
-  const Tree& tree = model.tree();
-  std::vector<int> rows;
-  const auto keep = [&](const auto& wanted) {
-    for (int l = 0; l < tree.dof(); ++l) {
-      if (wanted(tree.node_of(l))) {
-        rows.push_back(l);
-      }
-    }
-  };
-  switch (block.kind) {
-    case ParameterKind::kJointTransform: {
-      const int first = first_node_of_link(model, block.owner);
-      keep([&](int i) { return tree.is_on_path(i, first) || tree.is_on_path(first, i); });
-      break;
-    }
-    case ParameterKind::kBodyTransform:
-    case ParameterKind::kMass:
-    case ParameterKind::kInertia: {
-      const int node = model.node_of_link(block.owner);
-      keep([&](int i) { return tree.is_on_path(i, node); });
-      break;
-    }
-    case ParameterKind::kStiffness:
-    case ParameterKind::kDamping:
-      keep([&](int i) { return tree.node(i).link == block.owner; });
-      break;
-    case ParameterKind::kMotorP:
-    case ParameterKind::kMotorD: {
-      const int link = model.motors()[static_cast<std::size_t>(block.owner)].link;
-      keep([&](int i) { return tree.node(i).link == link; });
-      break;
-    }
-    case ParameterKind::kGravity:
-      keep([](int) { return true; });
-      break;
-  }
-  return rows;
+  for_each_contact_change(
+      stage.contacts(), mechanism, set, [&](int i, int contact, const PairWrenches<S>& change) {
+        grad[i] += scale * stage.contacts().weigh(pullback.twists(), contact, change);
+      });
 }
 
 namespace {
@@ -212,31 +208,42 @@ void joint_frame_column(const StageResidual<S>& stage, int first, const Vector6<
   const Vector6<S> wrench =
       below.I * by_frame.psi_ddot + below.B * by_frame.psi_dot + cross_wrench<S>(D, below.F);
   for (const int l : rows) {
-    if (tree.node_of(l) >= first && tree.is_on_path(first, tree.node_of(l))) {
+    const int node = tree.node_of(l);
+    if (tree.is_on_path(first, node)) {
       column[l] = stage.dynamics().IJ.col(l).dot(by_frame.psi_ddot) +
                   stage.dynamics().BJ.col(l).dot(by_frame.psi_dot.template head<3>());
     } else {
-      column[l] = stage.motion().J.col(l).dot(wrench);
+      column[l] = tree.is_on_path(node, first) ? stage.motion().J.col(l).dot(wrench) : S(0.0);
     }
   }
+  stage.contacts().add_displacement_below(stage.motion(), first, D, by_frame.psi_dot, column);
 }
 
 /// Wrench by which a body changes F of everything above it, projected on a
 /// path.
 template <Scalar S>
-void path_column(const StageResidual<S>& stage, const Vector6<S>& wrench,
+void path_column(const StageResidual<S>& stage, int link, const Vector6<S>& wrench,
                  const std::vector<int>& rows, Eigen::Ref<VectorX<S>> column) {
+  const Tree& tree = stage.model().tree();
+  const int body = stage.model().node_of_link(link);
   for (const int l : rows) {
-    column[l] = stage.motion().J.col(l).dot(wrench);
+    column[l] =
+        tree.is_on_path(tree.node_of(l), body) ? stage.motion().J.col(l).dot(wrench) : S(0.0);
   }
 }
 
+/// Column of a body transformation: the body alone moves by D.
 template <Scalar S>
-Vector6<S> body_frame_wrench(const StageResidual<S>& stage, int link, const Vector6<S>& D) {
+void body_frame_column(const StageResidual<S>& stage, int link, const Vector6<S>& D,
+                       const std::vector<int>& rows, Eigen::Ref<VectorX<S>> column) {
   const BodyDynamics<S>& body = stage.dynamics().of_link(link);
   const auto by_frame =
       frame_displacement<S>(stage.motion().at(stage.model().node_of_link(link)), D);
-  return body.I * by_frame.psi_ddot + body.B * by_frame.psi_dot + cross_wrench<S>(D, body.F);
+  const Vector6<S> wrench =
+      body.I * by_frame.psi_ddot + body.B * by_frame.psi_dot + cross_wrench<S>(D, body.F);
+  path_column<S>(stage, link, wrench, rows, column);
+  stage.contacts().add_displacement(
+      stage.motion(), [link](int other) { return other == link; }, D, by_frame.psi_dot, column);
 }
 
 }  // namespace
@@ -271,22 +278,28 @@ void parameter_columns(const Mechanism<S>& mechanism, const ParameterSet& set,
       case ParameterKind::kBodyTransform: {
         const auto twists = frame_twists<S>(model, mechanism, motion, set, block, p);
         each([&](int k, auto& column) {
-          path_column<S>(stage, body_frame_wrench<S>(stage, block.owner, twists(k)), rows, column);
+          body_frame_column<S>(stage, block.owner, twists(k), rows, column);
         });
         break;
       }
       case ParameterKind::kMass:
-      case ParameterKind::kInertia: {
+      case ParameterKind::kInertia:
+      case ParameterKind::kSize: {
         const auto wrenches = inertia_wrenches<S>(model, mechanism, motion, block.owner);
-        each([&](int k, auto& column) {
-          path_column<S>(stage,
-                         block.kind == ParameterKind::kMass
-                             ? wrenches.by_mass
-                             : wrenches.by_moment[static_cast<std::size_t>(k)],
-                         rows, column);
-        });
+        for (int i = block.first; i < block.first + block.size; ++i) {
+          const Vector6<S> wrench =
+              inertial_wrench<S>(model, mechanism, wrenches, block, set[i].component, p[i]);
+          path_column<S>(stage, block.owner, point.c() * wrench, rows, columns.col(i));
+        }
         break;
       }
+      case ParameterKind::kContactPoint:
+      case ParameterKind::kContactScale:
+      case ParameterKind::kContactCoefficient:
+        for (const int l : rows) {
+          columns.row(l).segment(block.first, block.size).setZero();
+        }
+        break;  // by for_each_contact_change, below
       case ParameterKind::kStiffness:
       case ParameterKind::kDamping: {
         const VectorX<S>& by =
@@ -315,6 +328,11 @@ void parameter_columns(const Mechanism<S>& mechanism, const ParameterSet& set,
         break;
     }
   }
+  for_each_contact_change(
+      stage.contacts(), mechanism, set, [&](int i, int contact, const PairWrenches<S>& change) {
+        stage.contacts().add_change(
+            motion, contact, {point.c() * change.on_a, point.c() * change.on_b}, columns.col(i));
+      });
 }
 
 template void add_frame_gradient(const Model&, const Mechanism<double>&, const Motion<double>&,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hbar/core/parameters.h"
+#include "hbar/core/sparsity.h"
 #include "hbar/core/stage_residual.h"
 
 namespace hbar {
@@ -35,9 +36,5 @@ template <Scalar S>
 void parameter_columns(const Mechanism<S>& mechanism, const ParameterSet& set,
                        const VectorView<S>& p, const StageResidual<S>& stage,
                        const StagePoint<S>& point, Eigen::Ref<MatrixX<S>> columns);
-
-/// The rows of g that a block's parameters can touch, ascending: the coordinates on the path to the
-/// world, and for a joint transformation also those below it.
-[[nodiscard]] std::vector<int> parameter_rows(const Model& model, const ParameterBlock& block);
 
 }  // namespace hbar

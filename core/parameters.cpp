@@ -1,131 +1,15 @@
 #include "hbar/core/parameters.h"
 
-#include <array>
-#include <limits>
-#include <numbers>
+#include <algorithm>
 
 #include "hbar/core/error.h"
 #include "hbar/core/nearest_name.h"
+#include "hbar/core/parameter_list.h"
 #include "hbar/core/rotation.h"
+#include "hbar/core/surface_points.h"
 
 namespace hbar {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
-/// Optimisers may come this close to zero mass, relative to the nominal one.
-constexpr double kSmallestShare = 1e-6;
-
-/// Appends the parameters of one kind, for all owners that `wanted` accepts.
-class Lister {
- public:
-  explicit Lister(const Model& model) : model_(model) {}
-
-  std::vector<Parameter> list() {
-    for (int i = 0; i < model_.link_count(); ++i) {
-      transform(ParameterKind::kJointTransform, i, "joint." + model_.link(i).joint.name);
-    }
-    for (int i = 0; i < model_.link_count(); ++i) {
-      transform(ParameterKind::kBodyTransform, i, "body." + model_.link(i).body.name);
-    }
-    for (int i = 0; i < model_.link_count(); ++i) {
-      mass_and_inertia(i);
-    }
-    for (int i = 0; i < model_.link_count(); ++i) {
-      stiffness_and_damping(i);
-    }
-    motors();
-    for (int k = 0; k < 3; ++k) {
-      add(ParameterKind::kGravity, 0, k, concat("gravity.", axis(k)),
-          concat(length_unit(model_.units()), "/s²"), model_.gravity()[k], -kInfinity, kInfinity);
-    }
-    return std::move(out_);
-  }
-
- private:
-  static std::string_view axis(int k) { return kAxes[static_cast<std::size_t>(k)]; }
-
-  void add(ParameterKind kind, int owner, int component, std::string name, std::string unit,
-           double nominal, double lower, double upper) {
-    out_.push_back(
-        {kind, owner, component, std::move(name), std::move(unit), nominal, lower, upper});
-  }
-
-  void transform(ParameterKind kind, int link, const std::string& owner) {
-    for (int k = 0; k < 3; ++k) {
-      add(kind, link, k, concat(owner, ".rotation.", axis(k)), "rad", 0.0, -std::numbers::pi,
-          std::numbers::pi);
-    }
-    for (int k = 0; k < 3; ++k) {
-      add(kind, link, 3 + k, concat(owner, ".translation.", axis(k)),
-          std::string(length_unit(model_.units())), 0.0, -kInfinity, kInfinity);
-    }
-  }
-
-  void mass_and_inertia(int link) {
-    const Body& body = model_.link(link).body;
-    const std::string mass(mass_unit(model_.units()));
-    add(ParameterKind::kMass, link, 0, concat("body.", body.name, ".mass"), mass, body.mass,
-        kSmallestShare * body.mass, kInfinity);
-    for (int k = 0; k < 3; ++k) {
-      add(ParameterKind::kInertia, link, k, concat("body.", body.name, ".inertia.", axis(k)),
-          concat(mass, "·", length_unit(model_.units()), "²"), body.inertia[k],
-          kSmallestShare * body.inertia[k], kInfinity);
-    }
-  }
-
-  /// "N·m/rad" or "N/m" and the like, by what the joint's first coordinate is.
-  std::string force_per(const Joint& joint, bool per_rate) const {
-    const bool angle = joint_dof(joint.kind) == 0 || is_angle(joint.kind, 0);
-    const bool metric = model_.units() == Units::kMetreKilogram;
-    const std::string displacement =
-        angle ? (metric ? "N·m/rad" : "dyn·cm/rad") : (metric ? "N/m" : "dyn/cm");
-    return per_rate ? displacement + "·s" : displacement;
-  }
-
-  void stiffness_and_damping(int link) {
-    const Joint& joint = model_.link(link).joint;
-    add(ParameterKind::kStiffness, link, 0, concat("joint.", joint.name, ".stiffness"),
-        force_per(joint, false), joint.stiffness, 0.0, kInfinity);
-    add(ParameterKind::kDamping, link, 0, concat("joint.", joint.name, ".damping"),
-        force_per(joint, true), joint.damping, 0.0, kInfinity);
-  }
-
-  void motors() {
-    for (std::size_t m = 0; m < model_.motors().size(); ++m) {
-      const Motor& motor = model_.motors()[m];
-      if (motor.kind != Motor::Kind::kPosition) {
-        continue;
-      }
-      const Joint& joint = model_.link(motor.link).joint;
-      const int owner = static_cast<int>(m);
-      add(ParameterKind::kMotorP, owner, 0, concat("motor.", joint.name, ".P"),
-          force_per(joint, false), motor.P, 0.0, kInfinity);
-      add(ParameterKind::kMotorD, owner, 0, concat("motor.", joint.name, ".D"),
-          force_per(joint, true), motor.D, 0.0, kInfinity);
-    }
-  }
-
-  const Model& model_;
-  std::vector<Parameter> out_;
-};
-
-unsigned mask_bit(ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::kJointTransform:
-      return kMaskJointTransform;
-    case ParameterKind::kBodyTransform:
-      return kMaskBodyTransform;
-    case ParameterKind::kMass:
-    case ParameterKind::kInertia:
-      return kMaskMassInertia;
-    case ParameterKind::kStiffness:
-    case ParameterKind::kDamping:
-      return kMaskStiffnessDamping;
-    default:
-      return 0;
-  }
-}
 
 /// Whether `wanted` is `name` or a prefix of it that ends at a dot.
 bool selects(std::string_view wanted, std::string_view name) {
@@ -136,6 +20,47 @@ template <Scalar S>
 RigidTransform<S> displaced(const RigidTransform<double>& nominal, const Vector6<S>& w_t) {
   return {nominal.R.cast<S>() * exp_rotation<S>(w_t.template head<3>()),
           nominal.p.cast<S>() + w_t.template tail<3>()};
+}
+
+/// Lets mass, moments and contact points follow the sizes already set. Kinds are applied in order,
+/// so that all of these hold their values at nominal sizes.
+template <Scalar S>
+void resize_body(const Body& body, int link, Mechanism<S>& mechanism) {
+  const auto& sizes = mechanism.sizes.col(link);
+  const std::vector<double> listed = sizes_of(body.shape);
+  Eigen::Vector3d nominal = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < listed.size(); ++k) {
+    nominal[static_cast<Eigen::Index>(k)] = listed[k];
+  }
+  const UnitSolid<S> now = unit_solid<S>(body.shape, sizes);
+  const UnitSolid<double> before = unit_solid<double>(body.shape, nominal);
+  mechanism.mass[link] *= now.mass / before.mass;
+  for (int k = 0; k < 3; ++k) {
+    mechanism.moments(k, link) *= now.moments[k] / before.moments[k];
+  }
+  auto& points = mechanism.contact_points[static_cast<std::size_t>(link)];
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    for (std::size_t k = 0; k < listed.size(); ++k) {
+      const Eigen::Vector3d rate =
+          surface_point_rate(body.shape, body.contact_points.col(i), static_cast<int>(k));
+      points.col(i) += rate.cast<S>() * (sizes[static_cast<Eigen::Index>(k)] - listed[k]);
+    }
+  }
+}
+
+/// Coefficients, scales and sizes that no contact can have.
+template <Scalar S>
+void require_contact_numbers(const ParameterSet& set, const VectorView<S>& p) {
+  for (int i = 0; i < set.size(); ++i) {
+    const double value = value_of(p[i]);
+    const ParameterKind kind = set[i].kind;
+    const bool may_vanish =
+        kind == ParameterKind::kContactScale || kind == ParameterKind::kContactCoefficient;
+    if ((may_vanish && value < 0.0) || (kind == ParameterKind::kSize && !(value > 0.0))) {
+      throw InvalidInput(
+          concat(set[i].name, " is ", value, "; it must be ", may_vanish ? "≥ 0" : "positive"));
+    }
+  }
 }
 
 void require_physical(const Model& model, const Eigen::VectorXd& mass,
@@ -157,10 +82,19 @@ void require_physical(const Model& model, const Eigen::VectorXd& mass,
 }  // namespace
 
 const std::vector<ParameterKind>& parameter_kinds() {
-  static const std::vector<ParameterKind> kinds = {
-      ParameterKind::kJointTransform, ParameterKind::kBodyTransform, ParameterKind::kMass,
-      ParameterKind::kInertia,        ParameterKind::kStiffness,     ParameterKind::kDamping,
-      ParameterKind::kMotorP,         ParameterKind::kMotorD,        ParameterKind::kGravity};
+  static const std::vector<ParameterKind> kinds = {ParameterKind::kJointTransform,
+                                                   ParameterKind::kBodyTransform,
+                                                   ParameterKind::kContactPoint,
+                                                   ParameterKind::kMass,
+                                                   ParameterKind::kInertia,
+                                                   ParameterKind::kStiffness,
+                                                   ParameterKind::kDamping,
+                                                   ParameterKind::kContactScale,
+                                                   ParameterKind::kMotorP,
+                                                   ParameterKind::kMotorD,
+                                                   ParameterKind::kGravity,
+                                                   ParameterKind::kContactCoefficient,
+                                                   ParameterKind::kSize};
   return kinds;
 }
 
@@ -170,6 +104,8 @@ std::string_view kind_name(ParameterKind kind) {
       return "joint transformation (I)";
     case ParameterKind::kBodyTransform:
       return "body transformation (II)";
+    case ParameterKind::kContactPoint:
+      return "contact point (III)";
     case ParameterKind::kMass:
       return "mass (IV)";
     case ParameterKind::kInertia:
@@ -178,12 +114,18 @@ std::string_view kind_name(ParameterKind kind) {
       return "stiffness (V)";
     case ParameterKind::kDamping:
       return "damping (V)";
+    case ParameterKind::kContactScale:
+      return "contact scale (VI)";
     case ParameterKind::kMotorP:
       return "motor P";
     case ParameterKind::kMotorD:
       return "motor D";
     case ParameterKind::kGravity:
       return "gravity";
+    case ParameterKind::kContactCoefficient:
+      return "contact coefficient";
+    case ParameterKind::kSize:
+      return "size";
   }
   return "";
 }
@@ -199,11 +141,11 @@ ParameterSet::ParameterSet(std::vector<Parameter> parameters) : parameters_(std:
   }
 }
 
-ParameterSet ParameterSet::all(const Model& model) { return ParameterSet(Lister(model).list()); }
+ParameterSet ParameterSet::all(const Model& model) { return ParameterSet(list_parameters(model)); }
 
 ParameterSet ParameterSet::masked(const Model& model) {
   std::vector<Parameter> chosen;
-  for (Parameter& parameter : Lister(model).list()) {
+  for (Parameter& parameter : list_parameters(model)) {
     const unsigned bit = mask_bit(parameter.kind);
     if (bit != 0 && (model.link(parameter.owner).design_mask & bit) != 0) {
       chosen.push_back(std::move(parameter));
@@ -213,7 +155,7 @@ ParameterSet ParameterSet::masked(const Model& model) {
 }
 
 ParameterSet ParameterSet::named(const Model& model, const std::vector<std::string>& names) {
-  std::vector<Parameter> every = Lister(model).list();
+  std::vector<Parameter> every = list_parameters(model);
   std::vector<bool> wanted(every.size(), false);
   for (const std::string& name : names) {
     bool found = false;
@@ -253,6 +195,23 @@ int ParameterSet::find(std::string_view name) const {
       concat("parameter '", name, "' is not in the set; ", unknown_name_hint(name, known)));
 }
 
+int ParameterSet::index(ParameterKind kind, int owner, int component) const {
+  const auto block = std::lower_bound(blocks_.begin(), blocks_.end(), std::pair{kind, owner},
+                                      [](const ParameterBlock& b, const auto& wanted) {
+                                        return std::pair{b.kind, b.owner} < wanted;
+                                      });
+  if (block == blocks_.end() || block->kind != kind || block->owner != owner) {
+    return -1;
+  }
+  const auto first = parameters_.begin() + block->first;
+  const auto found = std::lower_bound(
+      first, first + block->size, component,
+      [](const Parameter& parameter, int wanted) { return parameter.component < wanted; });
+  return found != first + block->size && found->component == component
+             ? static_cast<int>(found - parameters_.begin())
+             : -1;
+}
+
 namespace {
 
 template <typename Field>
@@ -276,6 +235,7 @@ void apply_parameters(const Model& model, const ParameterSet& set, const VectorV
   if (p.size() != set.size()) {
     throw InvalidInput(concat("p has ", p.size(), " entries; the parameter set has ", set.size()));
   }
+  require_contact_numbers<S>(set, p);
   mechanism = nominal_mechanism<S>(model);
   for (const ParameterBlock& block : set.blocks()) {
     const auto owner = static_cast<std::size_t>(block.owner);
@@ -289,6 +249,18 @@ void apply_parameters(const Model& model, const ParameterSet& set, const VectorV
         case ParameterKind::kJointTransform:
         case ParameterKind::kBodyTransform:
           w_t[k] = p[i];
+          break;
+        case ParameterKind::kContactPoint:
+          mechanism.contact_points[owner](k % 3, k / 3) = p[i];
+          break;
+        case ParameterKind::kContactScale:
+          mechanism.contact_scale[block.owner] = p[i];
+          break;
+        case ParameterKind::kContactCoefficient:
+          mechanism.contact_coefficients(k, block.owner) = p[i];
+          break;
+        case ParameterKind::kSize:
+          mechanism.sizes(k, block.owner) = p[i];
           break;
         case ParameterKind::kMass:
           mechanism.mass[block.owner] = p[i];
@@ -317,11 +289,13 @@ void apply_parameters(const Model& model, const ParameterSet& set, const VectorV
       mechanism.X_PJ[owner] = displaced<S>(model.link(block.owner).joint.X_PJ, w_t);
     } else if (block.kind == ParameterKind::kBodyTransform) {
       mechanism.X_JB[owner] = displaced<S>(model.link(block.owner).body.X_JB, w_t);
+    } else if (block.kind == ParameterKind::kSize) {
+      resize_body<S>(model.link(block.owner).body, block.owner, mechanism);
     }
   }
   require_physical(model, mechanism.mass.unaryExpr([](const S& m) { return value_of(m); }),
                    mechanism.moments.unaryExpr([](const S& m) { return value_of(m); }));
-  mechanism.update_inertia();
+  mechanism.update_derived();
 }
 
 template void apply_parameters(const Model&, const ParameterSet&, const VectorView<double>&,

@@ -9,18 +9,21 @@
 namespace hbar {
 
 /// Classes of design parameter, in the order in which they are listed: Table II of the document by
-/// its roman numbers, then motor gains and gravity. III (contact points) and VI (contact scale) are
-/// reserved for contact.
+/// its roman numbers, then what the document does not free.
 enum class ParameterKind {
   kJointTransform,  ///< I: rotation vector w and translation t, X_PJ = (R̄ exp([w]), p̄ + t)
   kBodyTransform,   ///< II: the same for X_JB
-  kMass,            ///< IV
-  kInertia,         ///< IV: principal moments
+  kContactPoint,    ///< III: x, y, z of each contact point in the body frame, at nominal sizes
+  kMass,            ///< IV: at nominal sizes
+  kInertia,         ///< IV: principal moments, at nominal sizes
   kStiffness,       ///< V
   kDamping,         ///< V
+  kContactScale,    ///< VI: s of the body whose points touch
   kMotorP,
   kMotorD,
-  kGravity
+  kGravity,
+  kContactCoefficient,  ///< k_n, k_t, μ, k_d of a contact
+  kSize  ///< of a body's shape: moves its contact points and surface, scales its mass and moments
 };
 
 /// The classes, with the name each has in messages and reports.
@@ -30,7 +33,7 @@ enum class ParameterKind {
 /// One scalar design parameter.
 struct Parameter {
   ParameterKind kind = ParameterKind::kJointTransform;
-  int owner = 0;         ///< link or motor; 0 for gravity
+  int owner = 0;         ///< link, motor or contact; 0 for gravity
   int component = 0;     ///< within its kind and owner
   std::string name;      ///< as in scene_format.md: "joint.NAME.rotation.x", "body.NAME.mass", …
   std::string unit;      ///< in the model's unit system
@@ -74,6 +77,9 @@ class ParameterSet {
   /// Index in p of a full name.
   /// @throws InvalidInput if it is not in the set
   [[nodiscard]] int find(std::string_view name) const;
+
+  /// Index in p of a component; −1 if it is not in the set.
+  [[nodiscard]] int index(ParameterKind kind, int owner, int component) const;
 
   [[nodiscard]] Eigen::VectorXd nominal() const;  ///< [size]
   [[nodiscard]] Eigen::VectorXd lower() const;    ///< [size]

@@ -3,17 +3,26 @@
 namespace hbar {
 namespace {
 
-/// G of the class comment.
+/// G of the class comment, without contact's displacements.
 template <Scalar S>
 inline Vector6<S> displacement_covector(const NodeMotion<S>& carrier, const Vector6<S>& a,
-                                        const Vector3<S>& b, const Vector6<S>& W,
+                                        const Vector6<S>& b, const Vector6<S>& W,
                                         const Vector6<S>& F) {
   Vector6<S> inner = cross_wrench<S>(carrier.V, a);
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 6; ++i) {
     inner[i] -= b[i];
   }
   return sum<S>(cross_wrench<S>(carrier.V, inner), cross_wrench<S>(-carrier.A, a),
                 cross_wrench<S>(-W, F));
+}
+
+/// Adds Bᵀ W, whose translational half is zero.
+template <Scalar S>
+inline void add_coriolis(const CoriolisOperator<S>& B, const Vector6<S>& W, Vector6<S>& b) {
+  const Vector3<S> angular = B.transposed_times(W);
+  for (int l = 0; l < 3; ++l) {
+    b[l] += angular[l];
+  }
 }
 
 }  // namespace
@@ -26,64 +35,95 @@ Pullback<S>::Pullback(const Model& model)
       twists_(static_cast<std::size_t>(model.tree().node_count())),
       joint_frames_(twists_.size()),
       wrench_sums_(twists_.size()),
-      coriolis_sums_(twists_.size()) {
+      rate_sums_(twists_.size()),
+      displacement_sums_(twists_.size()),
+      contact_(model.link_count()) {
   by_gravity_.setZero();
 }
 
 template <Scalar S>
-void Pullback<S>::compute(const Model& model, const Motion<S>& motion, const Dynamics<S>& dynamics,
-                          const VectorView<S>& z) {
-  const Tree& tree = model.tree();
-  const Vector6<S> at_rest = Vector6<S>::Zero();
+void Pullback<S>::weigh_nodes(const Tree& tree, const Motion<S>& motion,
+                              const Dynamics<S>& dynamics, const VectorView<S>& z) {
   for (int i = 0; i < tree.node_count(); ++i) {
     const Node& node = tree.node(i);
     const auto k = static_cast<std::size_t>(i);
-    twists_[k] = node.parent < 0 ? at_rest : twist(node.parent);
+    if (node.parent < 0) {
+      twists_[k].setZero();
+    } else {
+      twists_[k] = twist(node.parent);
+    }
     wrench_sums_[k].setZero();
-    coriolis_sums_[k].setZero();
+    rate_sums_[k].setZero();
+    displacement_sums_[k].setZero();
     for (int c = node.coordinates.begin; c < node.coordinates.end; ++c) {
       twists_[k] += z[c] * motion.J.col(c);
       wrench_sums_[k] += z[c] * dynamics.IJ.col(c);
-      coriolis_sums_[k] += z[c] * dynamics.BJ.col(c);
+      for (int l = 0; l < 3; ++l) {
+        rate_sums_[k][l] += z[c] * dynamics.BJ(l, c);
+      }
+    }
+  }
+}
+
+/// The subtree's sums are whole: its derivatives, and its share of the parent's.
+template <Scalar S>
+void Pullback<S>::sum_node(const Tree& tree, const Motion<S>& motion, const Dynamics<S>& dynamics,
+                           const VectorView<S>& z, int i) {
+  const Node& node = tree.node(i);
+  const auto k = static_cast<std::size_t>(i);
+  const NodeMotion<S>& parent = motion.parent_of(node);
+  const Vector6<S> at_rest = Vector6<S>::Zero();
+  const Vector6<S>& W = node.parent < 0 ? at_rest : twist(node.parent);
+  const BodyDynamics<S>& below = dynamics.below(i);
+  const Vector6<S> a = sum<S>(below.I * W, wrench_sums_[k]);
+  Vector6<S> b = rate_sums_[k];
+  add_coriolis<S>(below.B, W, b);
+  const Vector6<S> G =
+      sum<S>(displacement_covector<S>(parent, a, b, W, below.F), displacement_sums_[k]);
+  joint_frames_[k] = G;
+  const Vector6<S> V_sum = parent.V + motion.at(i).V;
+  for (int c = node.coordinates.begin; c < node.coordinates.end; ++c) {
+    const Vector6<S> J = motion.J.col(c);
+    by_q[c] = power<S>(G, J);
+    by_qdot[c] = power<S>(a, cross_twist<S>(V_sum, J)) + power<S>(b, J);
+    by_a[c] = power<S>(a, J);
+    if (node.motion == MotionKind::kExponential) {
+      const ExponentialMotion<S>& extra = motion.exponential(i);
+      const auto e = static_cast<std::size_t>(c - node.coordinates.begin);
+      by_q[c] += a.dot(cross_twist<S>(V_sum, extra.W[e]) + extra.U[e]) + b.dot(extra.W[e]);
+      by_qdot[c] += a.dot(extra.Z[e]);
+      for (std::size_t l = 0; l < 3; ++l) {
+        by_q[c] += z[node.coordinates.begin + static_cast<int>(l)] * extra.dJ[e][l].dot(below.F);
+      }
+    }
+  }
+  if (node.parent >= 0) {
+    const auto above = static_cast<std::size_t>(node.parent);
+    wrench_sums_[above] += wrench_sums_[k];
+    rate_sums_[above] += rate_sums_[k];
+    displacement_sums_[above] += displacement_sums_[k];
+  } else {
+    by_gravity_ -= wrench_sums_[k].template tail<3>();
+  }
+}
+
+template <Scalar S>
+void Pullback<S>::compute(const Model& model, const Motion<S>& motion, const Dynamics<S>& dynamics,
+                          const VectorView<S>& z, const ContactForces<S>* contacts) {
+  const Tree& tree = model.tree();
+  weigh_nodes(tree, motion, dynamics, z);
+  has_contact_ = contacts != nullptr && !contacts->active().empty();
+  if (has_contact_) {
+    contacts->pull_back(twists_, contact_);
+    for (int link = 0; link < model.link_count(); ++link) {
+      const auto k = static_cast<std::size_t>(model.node_of_link(link));
+      rate_sums_[k] += contact_.by_twist[static_cast<std::size_t>(link)];
+      displacement_sums_[k] += contact_.by_displacement[static_cast<std::size_t>(link)];
     }
   }
   by_gravity_.setZero();
   for (int i = tree.node_count(); i-- > 0;) {
-    const Node& node = tree.node(i);
-    const auto k = static_cast<std::size_t>(i);
-    const NodeMotion<S>& parent = motion.parent_of(node);
-    const Vector6<S>& W = node.parent < 0 ? at_rest : twist(node.parent);
-    const BodyDynamics<S>& below = dynamics.below(i);
-    const Vector6<S> a = sum<S>(below.I * W, wrench_sums_[k]);
-    Vector3<S> b = below.B.transposed_times(W);
-    for (int l = 0; l < 3; ++l) {
-      b[l] += coriolis_sums_[k][l];
-    }
-    const Vector6<S> G = displacement_covector<S>(parent, a, b, W, below.F);
-    joint_frames_[k] = G;
-    const Vector6<S> V_sum = parent.V + motion.at(i).V;
-    for (int c = node.coordinates.begin; c < node.coordinates.end; ++c) {
-      const Vector6<S> J = motion.J.col(c);
-      by_q[c] = power<S>(G, J);
-      by_qdot[c] = power<S>(a, cross_twist<S>(V_sum, J)) + b[0] * J[0] + b[1] * J[1] + b[2] * J[2];
-      by_a[c] = power<S>(a, J);
-      if (node.motion == MotionKind::kExponential) {
-        const ExponentialMotion<S>& extra = motion.exponential(i);
-        const auto e = static_cast<std::size_t>(c - node.coordinates.begin);
-        by_q[c] += a.dot(cross_twist<S>(V_sum, extra.W[e]) + extra.U[e]) +
-                   b.dot(extra.W[e].template head<3>());
-        by_qdot[c] += a.dot(extra.Z[e]);
-        for (std::size_t l = 0; l < 3; ++l) {
-          by_q[c] += z[node.coordinates.begin + static_cast<int>(l)] * extra.dJ[e][l].dot(below.F);
-        }
-      }
-    }
-    if (node.parent >= 0) {
-      wrench_sums_[static_cast<std::size_t>(node.parent)] += wrench_sums_[k];
-      coriolis_sums_[static_cast<std::size_t>(node.parent)] += coriolis_sums_[k];
-    } else {
-      by_gravity_ -= wrench_sums_[k].template tail<3>();
-    }
+    sum_node(tree, motion, dynamics, z, i);
   }
 }
 
@@ -93,7 +133,14 @@ Vector6<S> Pullback<S>::body_frame(const Model& model, const Motion<S>& motion,
   const int i = model.node_of_link(link);
   const BodyDynamics<S>& body = dynamics.of_link(link);
   const Vector6<S>& W = twist(i);
-  return displacement_covector<S>(motion.at(i), body.I * W, body.B.transposed_times(W), W, body.F);
+  Vector6<S> b = Vector6<S>::Zero();
+  Vector6<S> by_displacement = Vector6<S>::Zero();
+  if (has_contact_) {
+    b = contact_.by_twist[static_cast<std::size_t>(link)];
+    by_displacement = contact_.by_displacement[static_cast<std::size_t>(link)];
+  }
+  add_coriolis<S>(body.B, W, b);
+  return by_displacement + displacement_covector<S>(motion.at(i), body.I * W, b, W, body.F);
 }
 
 template class Pullback<double>;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hbar/core/contact_forces.h"
 #include "hbar/core/dynamics.h"
 
 namespace hbar {
@@ -13,17 +14,19 @@ namespace hbar {
 ///
 ///     G = −A_λ ×* a + V_λ ×* (V_λ ×* a) − V_λ ×* b − W_λ ×* F
 ///
-/// with zᵀ ∂ID/∂D = G·D for each of its displacement twists D. Sized once, reused; call after
+/// with zᵀ ∂ID/∂D = G·D for each of its displacement twists D. Contact adds covectors on the bodies
+/// it touches: those on displacements to G, those on twists to b. Sized once, reused; call after
 /// subtree_dynamics with the same motion.
 template <Scalar S>
 class Pullback {
  public:
   explicit Pullback(const Model& model);
 
-  /// @param z  weights on the rows of ID                                         [dof]
+  /// @param z         weights on the rows of ID                                  [dof]
+  /// @param contacts  linearized at the same motion, or null
   /// Allocates nothing.
   void compute(const Model& model, const Motion<S>& motion, const Dynamics<S>& dynamics,
-               const VectorView<S>& z);
+               const VectorView<S>& z, const ContactForces<S>* contacts = nullptr);
 
   VectorX<S> by_q;     ///< zᵀ ∂ID/∂q                                              [dof]
   VectorX<S> by_qdot;  ///< zᵀ ∂ID/∂q̇                                              [dof]
@@ -33,6 +36,8 @@ class Pullback {
   [[nodiscard]] const Vector6<S>& twist(int node) const {
     return twists_[static_cast<std::size_t>(node)];
   }
+  /// The same by node.
+  [[nodiscard]] std::span<const Vector6<S>> twists() const { return twists_; }
   /// Covector of displacing everything from a joint's rest frame on; `node` is the first of its
   /// joint.                                                                       [6]
   [[nodiscard]] const Vector6<S>& joint_frame(int node) const {
@@ -45,10 +50,18 @@ class Pullback {
   [[nodiscard]] const Vector3<S>& by_gravity() const { return by_gravity_; }
 
  private:
+  void weigh_nodes(const Tree& tree, const Motion<S>& motion, const Dynamics<S>& dynamics,
+                   const VectorView<S>& z);
+  void sum_node(const Tree& tree, const Motion<S>& motion, const Dynamics<S>& dynamics,
+                const VectorView<S>& z, int i);
+
   std::vector<Vector6<S>> twists_;
   std::vector<Vector6<S>> joint_frames_;
-  std::vector<Vector6<S>> wrench_sums_;    // Σ over the subtree of z_l I^C_l J_l
-  std::vector<Vector3<S>> coriolis_sums_;  // the same with (B^C_l)ᵀ, angular half
+  std::vector<Vector6<S>> wrench_sums_;        // Σ over the subtree of z_l I^C_l J_l
+  std::vector<Vector6<S>> rate_sums_;          // the same with (B^C_l)ᵀ, and contact by twists
+  std::vector<Vector6<S>> displacement_sums_;  // contact by displacements
+  LinkCovectors<S> contact_;                   // per link, what the last two sums start from
+  bool has_contact_ = false;
   Vector3<S> by_gravity_;
 };
 

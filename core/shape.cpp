@@ -7,54 +7,52 @@
 namespace hbar {
 namespace {
 
-void require_positive(double value, const char* what) {
+void require_positive(double value, std::string_view what) {
   if (!(value > 0.0) || !std::isfinite(value)) {
     throw InvalidInput(
         concat("solid_mass_properties: ", what, " is ", value, "; it must be positive and finite"));
   }
 }
 
-MassProperties properties(const NoShape&, double) {
-  throw InvalidInput("solid_mass_properties: a body without a shape has no volume; give its mass");
+template <Scalar S>
+UnitSolid<S> unit(const Cuboid&, const Vector3<S>& size) {
+  const Vector3<S> squared = size.cwiseAbs2();
+  const S mass = size[0] * size[1] * size[2];
+  return {mass, mass / 12.0 * (Vector3<S>::Constant(squared.sum()) - squared)};
 }
 
-MassProperties properties(const Cuboid& cuboid, double density) {
-  for (int i = 0; i < 3; ++i) {
-    require_positive(cuboid.size[i], "a side of the cuboid");
-  }
-  const Eigen::Vector3d squared = cuboid.size.cwiseAbs2();
-  const double mass = density * cuboid.size.prod();
-  return {mass, mass / 12.0 * (Eigen::Vector3d::Constant(squared.sum()) - squared)};
+template <Scalar S>
+UnitSolid<S> unit(const Sphere&, const Vector3<S>& size) {
+  const S& r = size[0];
+  const S mass = 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  return {mass, Vector3<S>::Constant(0.4 * mass * r * r)};
 }
 
-MassProperties properties(const Sphere& sphere, double density) {
-  require_positive(sphere.radius, "the radius of the sphere");
-  const double r = sphere.radius;
-  const double mass = density * 4.0 / 3.0 * std::numbers::pi * r * r * r;
-  return {mass, Eigen::Vector3d::Constant(0.4 * mass * r * r)};
-}
-
-MassProperties properties(const Cylinder& cylinder, double density) {
-  require_positive(cylinder.radius, "the radius of the cylinder");
-  require_positive(cylinder.length, "the length of the cylinder");
-  const double r2 = cylinder.radius * cylinder.radius;
-  const double mass = density * std::numbers::pi * r2 * cylinder.length;
-  const double across = mass * (3.0 * r2 + cylinder.length * cylinder.length) / 12.0;
+template <Scalar S>
+UnitSolid<S> unit(const Cylinder&, const Vector3<S>& size) {
+  const S r2 = size[0] * size[0];
+  const S& length = size[1];
+  const S mass = std::numbers::pi * r2 * length;
+  const S across = mass * (3.0 * r2 + length * length) / 12.0;
   return {mass, {across, across, 0.5 * mass * r2}};
 }
 
-MassProperties properties(const Capsule& capsule, double density) {
-  require_positive(capsule.radius, "the radius of the capsule");
-  require_positive(capsule.length, "the length of the capsule");
-  const double r = capsule.radius;
-  const double l = capsule.length;
-  const MassProperties tube = properties(Cylinder{r, l}, density);
-  const MassProperties ball = properties(Sphere{r}, density);
+template <Scalar S>
+UnitSolid<S> unit(const Capsule&, const Vector3<S>& size) {
+  const S& r = size[0];
+  const S& length = size[1];
+  const UnitSolid<S> tube = unit<S>(Cylinder{}, size);
+  const UnitSolid<S> ball = unit<S>(Sphere{}, size);
   // A half-ball's centre of mass lies 3r/8 beyond its flat face. About its own centre of mass its
-  // transverse moment is (2/5 − 9/64) m r²; both halves are then moved out to l/2 + 3r/8.
-  const double out = 0.5 * l + 0.375 * r;
-  const double across = tube.inertia.x() + ball.mass * ((0.4 - 9.0 / 64.0) * r * r + out * out);
-  return {tube.mass + ball.mass, {across, across, tube.inertia.z() + ball.inertia.z()}};
+  // transverse moment is (2/5 − 9/64) m r²; both halves are then moved out to length/2 + 3r/8.
+  const S out = 0.5 * length + 0.375 * r;
+  const S across = tube.moments.x() + ball.mass * ((0.4 - 9.0 / 64.0) * r * r + out * out);
+  return {tube.mass + ball.mass, {across, across, tube.moments.z() + ball.moments.z()}};
+}
+
+template <Scalar S>
+UnitSolid<S> unit(const NoShape&, const Vector3<S>&) {
+  throw InvalidInput("solid_mass_properties: a body without a shape has no volume; give its mass");
 }
 
 std::vector<double> sizes(const NoShape&) { return {}; }
@@ -105,9 +103,25 @@ Shape with_sizes(const Shape& shape, std::span<const double> sizes) {
   return std::visit([sizes](const auto& solid) { return resized(solid, sizes); }, shape);
 }
 
+template <Scalar S>
+UnitSolid<S> unit_solid(const Shape& kind, const Vector3<S>& sizes) {
+  return std::visit([&sizes](const auto& solid) { return unit<S>(solid, sizes); }, kind);
+}
+
+template UnitSolid<double> unit_solid(const Shape&, const Vector3<double>&);
+template UnitSolid<Dual> unit_solid(const Shape&, const Vector3<Dual>&);
+
 MassProperties solid_mass_properties(const Shape& shape, double density) {
   require_positive(density, "the density");
-  return std::visit([density](const auto& solid) { return properties(solid, density); }, shape);
+  const std::vector<double> sizes = sizes_of(shape);
+  const std::vector<std::string> names = size_names(shape);
+  Eigen::Vector3d padded = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    require_positive(sizes[k], names[k]);
+    padded[static_cast<Eigen::Index>(k)] = sizes[k];
+  }
+  const UnitSolid<double> solid = unit_solid<double>(shape, padded);
+  return {density * solid.mass, density * solid.moments};
 }
 
 }  // namespace hbar

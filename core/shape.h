@@ -60,6 +60,19 @@ struct MassProperties {
   Eigen::Vector3d inertia = Eigen::Vector3d::Zero();  ///< principal moments, mass·length² [3]
 };
 
+/// The same for a solid of density 1.
+template <Scalar S>
+struct UnitSolid {
+  S mass;              ///< length³
+  Vector3<S> moments;  ///< length⁵                                                  [3]
+};
+
+/// @param kind   which shape; its own lengths are not read
+/// @param sizes  lengths as sizes_of orders them, the rest unread                    [3]
+/// @throws InvalidInput for NoShape
+template <Scalar S>
+[[nodiscard]] UnitSolid<S> unit_solid(const Shape& kind, const Vector3<S>& sizes);
+
 /// Mass properties of a homogeneous solid.
 ///
 /// @param shape    any shape but NoShape; lengths > 0

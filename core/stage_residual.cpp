@@ -14,6 +14,7 @@ template <Scalar S>
 StageResidual<S>::StageResidual(const Model& model)
     : model_(model),
       motion_(model.tree()),
+      contacts_(model),
       dynamics_(model),
       columns_(model.tree()),
       joint_forces_(model),
@@ -26,7 +27,8 @@ template <Scalar S>
 void StageResidual<S>::residual(const Mechanism<S>& mechanism, const StagePoint<S>& point,
                                 Eigen::Ref<VectorX<S>> g) {
   compute_motion<S>(model_.tree(), mechanism, point.q, point.qdot, point.a, motion_);
-  inverse_dynamics<S>(model_, mechanism, motion_, dynamics_, g);
+  contacts_.evaluate(mechanism, motion_);
+  inverse_dynamics<S>(model_, mechanism, motion_, dynamics_, g, contacts_.wrenches());
   compute_joint_forces<S>(model_, mechanism, point.q, point.qdot, point.u, point.start,
                           joint_forces_);
   g = point.c() * (g - joint_forces_.tau);
@@ -38,7 +40,8 @@ void StageResidual<S>::linearize(const Mechanism<S>& mechanism, const StagePoint
   c_ = point.c();
   rate_ = point.rate;
   compute_motion<S>(model_.tree(), mechanism, point.q, point.qdot, point.a, motion_);
-  subtree_dynamics<S>(model_, mechanism, motion_, dynamics_, g);
+  contacts_.linearize(mechanism, motion_);
+  subtree_dynamics<S>(model_, mechanism, motion_, dynamics_, g, contacts_.wrenches());
   compute_joint_forces<S>(model_, mechanism, point.q, point.qdot, point.u, point.start,
                           joint_forces_);
   g = c_ * (g - joint_forces_.tau);
@@ -53,6 +56,14 @@ void StageResidual<S>::jacobian(const JacobianWeights<S>& weights, Eigen::Ref<Ma
     columns_ready_ = true;
   }
   columns_.project(model_.tree(), motion_, dynamics_, scaled, out);
+  if (!contacts_.active().empty()) {
+    for (int c = 0; c < model_.dof(); ++c) {
+      const Vector6<S> J = motion_.J.col(c);
+      const Vector6<S> psi_dot = scaled.q * columns_.psi_dot(c) + scaled.v * J;
+      contacts_.add_displacement_below(motion_, model_.tree().node_of(c), scaled.q * J, psi_dot,
+                                       out.col(c));
+    }
+  }
   out.diagonal() -= scaled.q * joint_forces_.by_q + scaled.v * joint_forces_.by_qdot;
 }
 
@@ -63,7 +74,7 @@ void StageResidual<S>::newton_matrix(Eigen::Ref<MatrixX<S>> out) {
 
 template <Scalar S>
 void StageResidual<S>::pull_back(const VectorView<S>& z) {
-  pullback_.compute(model_, motion_, dynamics_, z);
+  pullback_.compute(model_, motion_, dynamics_, z, &contacts_);
   by_q_ = c_ * (pullback_.by_q - z.cwiseProduct(joint_forces_.by_q));
   by_qdot_ = c_ * (pullback_.by_qdot - z.cwiseProduct(joint_forces_.by_qdot));
   by_a_ = c_ * pullback_.by_a;

@@ -23,8 +23,8 @@ struct StagePoint {
 };
 
 /// The one residual of every implicit stage,  g = M Δ − c f_r = c (ID(q, q̇, a; p) − τ)  (22), (24),
-/// (25), (28), and its derivatives. Joint forces enter through τ; forces on bodies (contact) belong
-/// in Dynamics, as wrenches subtracted from F before the subtree sums.
+/// (25), (28), and its derivatives. Joint forces enter through τ, contact as wrenches
+/// on bodies.
 ///
 /// Sized once, reused; evaluations allocate nothing. One object per thread.
 template <Scalar S>
@@ -60,12 +60,14 @@ class StageResidual {
   [[nodiscard]] const Motion<S>& motion() const { return motion_; }
   [[nodiscard]] const Dynamics<S>& dynamics() const { return dynamics_; }
   [[nodiscard]] const JointForces<S>& joint_forces() const { return joint_forces_; }
+  [[nodiscard]] const ContactForces<S>& contacts() const { return contacts_; }
   /// zᵀ of inverse dynamics alone, without the factor c.
   [[nodiscard]] const Pullback<S>& pullback() const { return pullback_; }
 
  private:
   const Model& model_;
   Motion<S> motion_;
+  ContactForces<S> contacts_;
   Dynamics<S> dynamics_;
   Columns<S> columns_;
   bool columns_ready_ = false;  // prepared at the last linearize

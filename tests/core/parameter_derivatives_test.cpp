@@ -65,7 +65,7 @@ class EveryModelsParameters : public ::testing::TestWithParam<unsigned> {
     }
   }
 
-  const Model model = testing::random_model(GetParam());
+  const Model model = testing::random_contact_model(GetParam());
   const ParameterSet set = ParameterSet::all(model);
   Random random{GetParam()};
   VectorXd p = testing::random_parameters(set, random);

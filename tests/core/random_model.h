@@ -42,10 +42,83 @@ namespace hbar::testing {
   return body;
 }
 
+/// A distance given by data whose gradient is not of unit length: half of xᵀ A x − size².
+class QuadricField final : public DistanceField {
+ public:
+  QuadricField(const Eigen::Matrix3d& A, double size) : A_(A), size_(size) {}
+  [[nodiscard]] double lower_bound(const Eigen::Vector3d& x) const override {
+    return 0.5 * (x.dot(A_ * x) - size_ * size_);
+  }
+  [[nodiscard]] Sample sample(const Eigen::Vector3d& x) const override {
+    return {lower_bound(x), A_ * x, A_};
+  }
+  [[nodiscard]] Eigen::Matrix3d hessian_slope(const Eigen::Vector3d&,
+                                              const Eigen::Vector3d&) const override {
+    return Eigen::Matrix3d::Zero();
+  }
+
+ private:
+  Eigen::Matrix3d A_;
+  double size_;
+};
+
+/// Shapes as large as the distances between bodies, so that about half of them overlap.
+[[nodiscard]] inline Shape random_shape(Random& random, std::size_t i) {
+  const double a = random.between(1.0, 3.0);
+  const double b = random.between(1.0, 3.0);
+  switch (i % 4) {
+    case 0:
+      return Cuboid{{a, b, random.between(1.0, 3.0)}};
+    case 1:
+      return Sphere{a};
+    case 2:
+      return Cylinder{a, b};
+    default:
+      return Capsule{a, b};
+  }
+}
+
+/// Contacts of every surface, law and reaction among the bodies, the world as a plane among them.
+inline void add_random_contacts(ModelBuilder& builder, int links, Random& random) {
+  for (int i = 0; i < 4 * links; ++i) {
+    Contact contact;
+    contact.link = i % links;
+    contact.other = (i * 5 + 3 + i / links) % links;
+    if (contact.other == contact.link) {
+      continue;
+    }
+    switch (i % 6) {
+      case 0:
+        contact.surface = Plane{random.vector3(), random.direction()};
+        contact.other = i % 4 == 0 ? -1 : contact.other;
+        break;
+      case 1:
+        contact.surface = OwnShape{.caps = false};
+        break;
+      case 2:
+        contact.surface = std::make_shared<const QuadricField>(
+            Eigen::Vector3d(1.0, 0.7, 1.4).asDiagonal(), random.between(1.0, 2.0));
+        break;
+      default:
+        break;
+    }
+    contact.coefficients = {random.between(1.0, 5.0), random.between(0.1, 1.0),
+                            random.between(0.05, 1.0), random.between(0.1, 1.0)};
+    contact.normal_law = i % 7 == 0 ? NormalLaw::kLinear : NormalLaw::kDocument;
+    contact.friction_law = i % 5 == 0 ? FrictionLaw::kSmooth : FrictionLaw::kDocument;
+    contact.friction_width = 0.7;
+    contact.adhesion = i % 4 != 1;
+    contact.reaction = i % 3 == 0 ? Reaction::kSurface : Reaction::kPoint;
+    builder.add_contact(contact);
+  }
+}
+
 /// Two branching trees of every kind of joint and a second exponential, revolute and fixed one, in
 /// an order that the seed shuffles; springs, dampers and limits; a motor of every kind; four end
 /// effectors; a mask of its own on each link. Subtrees are not contiguous in coordinates.
-[[nodiscard]] inline Model random_model(unsigned seed) {
+///
+/// @param contacts  whether bodies have shapes and contact points, and touch each other
+[[nodiscard]] inline Model random_model(unsigned seed, bool contacts = false) {
   constexpr std::array<int, 14> kParents = {-1, 0, 1, 1, 3, 2, 0, 6, -1, 8, 7, 4, 9, 5};
   Random random(seed);
   std::vector<JointKind> kinds = every_joint(random);
@@ -68,6 +141,10 @@ namespace hbar::testing {
     }
     Body body = random_body(random);
     body.name = concat("b", i);
+    if (contacts) {
+      body.shape = random_shape(random, i);
+      body.contact_points = random.matrix(3, 6);
+    }
     builder.add_link(kParents[i], joint, body, concat("l", i), static_cast<unsigned>(i * 5) % 64U);
   }
   int motors = 0;
@@ -91,8 +168,14 @@ namespace hbar::testing {
   for (const int link : {13, 11, 3, 12}) {
     builder.add_end_effector({.name = "", .link = link, .position = random.vector3()});
   }
+  if (contacts) {
+    add_random_contacts(builder, static_cast<int>(kinds.size()), random);
+  }
   return builder.build();
 }
+
+/// The same with contacts.
+[[nodiscard]] inline Model random_contact_model(unsigned seed) { return random_model(seed, true); }
 
 /// A state and accelerations, all entries of order one.
 struct State {
@@ -142,7 +225,8 @@ struct State {
         break;
       case ParameterKind::kMass:
       case ParameterKind::kInertia:
-        p[i] *= random.between(0.95, 1.05);
+      case ParameterKind::kSize:
+        p[i] *= random.between(0.98, 1.02);
         break;
       default:
         p[i] += random.between(0.0, 0.5);
@@ -152,16 +236,18 @@ struct State {
   return p;
 }
 
-/// ID(q, q̇, a).                                       [dof]
+/// ID(q, q̇, a) less what contact does.                                  [dof]
 template <Scalar S>
 [[nodiscard]] VectorX<S> inverse_dynamics_at(const Model& model, const Mechanism<S>& mechanism,
                                              const VectorX<S>& q, const VectorX<S>& qdot,
                                              const VectorX<S>& a) {
   Motion<S> motion(model.tree());
+  ContactForces<S> contacts(model);
   Dynamics<S> dynamics(model);
   VectorX<S> tau = VectorX<S>::Zero(model.dof());
   compute_motion<S>(model.tree(), mechanism, q, qdot, a, motion);
-  inverse_dynamics<S>(model, mechanism, motion, dynamics, tau);
+  contacts.evaluate(mechanism, motion);
+  inverse_dynamics<S>(model, mechanism, motion, dynamics, tau, contacts.wrenches());
   return tau;
 }
 

@@ -99,14 +99,12 @@ TEST(SolidMassProperties, RefusesWhatIsNoSolid) {
       {NoShape{}, 1.0, "a body without a shape has no volume; give its mass"},
       {Sphere{1.0}, 0.0, "the density is 0; it must be positive and finite"},
       {Sphere{1.0}, nan, "the density is nan; it must be positive and finite"},
-      {Cuboid{{1.0, -2.0, 1.0}}, 1.0, "a side of the cuboid is -2; it must be positive and finite"},
-      {Sphere{0.0}, 1.0, "the radius of the sphere is 0; it must be positive and finite"},
-      {Cylinder{-1.0, 1.0}, 1.0,
-       "the radius of the cylinder is -1; it must be positive and finite"},
-      {Cylinder{1.0, 0.0}, 1.0, "the length of the cylinder is 0; it must be positive and finite"},
-      {Capsule{0.0, 1.0}, 1.0, "the radius of the capsule is 0; it must be positive and finite"},
-      {Capsule{1.0, 1.0 / 0.0}, 1.0,
-       "the length of the capsule is inf; it must be positive and finite"},
+      {Cuboid{{1.0, -2.0, 1.0}}, 1.0, "size.y is -2; it must be positive and finite"},
+      {Sphere{0.0}, 1.0, "radius is 0; it must be positive and finite"},
+      {Cylinder{-1.0, 1.0}, 1.0, "radius is -1; it must be positive and finite"},
+      {Cylinder{1.0, 0.0}, 1.0, "length is 0; it must be positive and finite"},
+      {Capsule{0.0, 1.0}, 1.0, "radius is 0; it must be positive and finite"},
+      {Capsule{1.0, 1.0 / 0.0}, 1.0, "length is inf; it must be positive and finite"},
   };
   for (const Case& bad : cases) {
     EXPECT_EQ(message_of<InvalidInput>(

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "hbar/core/contact_forces.h"
+#include "hbar/core/parameters.h"
+#include "hbar/core/surface_points.h"
+
+namespace hbar {
+
+/// Visits how contact wrenches change with a set's parameters at fixed motion, after
+/// contacts.linearize: contact points (III), contact scale (VI), coefficients and sizes.
+///
+/// @param visit  visit(index in p, contact, PairWrenches): one share of ∂(wrenches)/∂p; a
+///               parameter may be visited any number of times, and what touches nothing is not
+template <Scalar S, typename Visit>
+void for_each_contact_change(const ContactForces<S>& contacts, const Mechanism<S>& mechanism,
+                             const ParameterSet& set, const Visit& visit) {
+  const Model& model = contacts.model();
+  for (const ActivePair<S>& pair : contacts.active()) {
+    const Contact& contact = model.contact(pair.contact);
+    const Body& body = model.link(contact.link).body;
+    const int sizes_a = size_count(body.shape);
+    const bool resizable = std::holds_alternative<OwnShape>(contact.surface);
+    const Shape nothing = NoShape{};
+    const Shape& other = resizable ? model.link(contact.other).body.shape : nothing;
+    const int size_owner = std::max(contact.other, 0);
+    const SurfaceDistance<S> surface(contact.surface, other, mechanism.sizes.col(size_owner));
+    const auto changes = [&](int index, const TouchingPoint<S>& point, const PointChange<S>& by) {
+      visit(index, pair.contact, wrench_change<S>(contact.reaction, pair.motion, point, by));
+    };
+    const int scale = set.index(ParameterKind::kContactScale, contact.link, 0);
+    for (const TouchingPoint<S>& point : contacts.points(pair)) {
+      if (scale >= 0) {
+        changes(scale, point, {.f = point.law.by_scale});
+      }
+      for (int k = 0; k < 4; ++k) {
+        const int index = set.index(ParameterKind::kContactCoefficient, pair.contact, k);
+        if (index >= 0) {
+          changes(index, point, {.f = point.law.by_coefficient[static_cast<std::size_t>(k)]});
+        }
+      }
+      for (int k = 0; k < 3 && point.index >= 0; ++k) {
+        const int index =
+            set.index(ParameterKind::kContactPoint, contact.link, 3 * point.index + k);
+        if (index >= 0) {
+          changes(index, point, {.x = pair.motion.a.X_WB.R.col(k)});
+        }
+      }
+      for (int k = 0; k < sizes_a; ++k) {
+        const int index = set.index(ParameterKind::kSize, contact.link, k);
+        if (index < 0) {
+          continue;
+        }
+        if (point.index < 0) {
+          changes(index, point, {.x = -point.n});
+        } else {
+          const Eigen::Vector3d rate =
+              surface_point_rate(body.shape, body.contact_points.col(point.index), k);
+          changes(index, point, {.x = pair.motion.a.X_WB.R * rate.cast<S>()});
+        }
+      }
+      for (int k = 0; k < surface.size_count(); ++k) {
+        const int index = set.index(ParameterKind::kSize, contact.other, k);
+        if (index >= 0) {
+          const SizeRate<S> rate = surface.by_size(point.x_B, k);
+          changes(index, point, {.d = rate.d, .n = pair.motion.b.X_WB.R * rate.n});
+        }
+      }
+    }
+  }
+}
+
+}  // namespace hbar
