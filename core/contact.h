@@ -63,7 +63,7 @@ struct Contact {
   NormalLaw normal_law = NormalLaw::kDocument;
   FrictionLaw friction_law = FrictionLaw::kDocument;
   double friction_width = 0.0;  ///< of the smooth law, length/time, > 0 for it
-  bool adhesion = true;         ///< the document's law pulls when damping outweighs stiffness
+  bool adhesion = true;  ///< f_n may pull, where damping outweighs stiffness; else it stops at 0
   Reaction reaction = Reaction::kPoint;
 
   friend bool operator==(const Contact&, const Contact&) = default;

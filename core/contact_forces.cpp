@@ -5,6 +5,9 @@
 namespace hbar {
 namespace {
 
+/// Room for touching points that is kept from the start; seldom do more touch at once.
+constexpr std::size_t kReserved = 1024;
+
 /// Coordinates above and of a node.
 std::vector<CoordinateRange> path_of(const Tree& tree, int node) {
   std::vector<CoordinateRange> path = tree.ancestors(node);
@@ -39,12 +42,15 @@ ContactForces<S>::ContactForces(const Model& model)
   }
   wrenches_.resize(takes_part_.size());
   pairs_.resize(model.contacts().size());
+  Eigen::Index points = 0;
   for (const Contact& contact : model.contacts()) {
+    points += std::max<Eigen::Index>(model.link(contact.link).body.contact_points.cols(), 1);
     takes_part_[static_cast<std::size_t>(contact.link)] = 1;
     if (contact.other >= 0) {
       takes_part_[static_cast<std::size_t>(contact.other)] = 1;
     }
   }
+  points_.reserve(std::min(static_cast<std::size_t>(points), kReserved));
   const Tree& tree = model.tree();
   for (int i = 0; i < model.link_count(); ++i) {
     paths_.push_back(path_of(tree, model.node_of_link(i)));
@@ -108,10 +114,15 @@ void ContactForces<S>::run_pair(const Mechanism<S>& mechanism, int index) {
   pair.contact = index;
   pair.first = points_.size();
   pair.wrenches = {};
+  TouchingPoint<S> scratch;
   const auto add = [&](int point, const Vector3<S>& x_A, const S& radius) {
-    points_.push_back(
-        touching_point<S>(contact, numbers, surface, pair.motion, point, x_A, radius));
-    touch(contact, points_.back(), summary, pair.wrenches);
+    if constexpr (kWithDerivatives) {
+      points_.emplace_back();
+    }
+    TouchingPoint<S>& touching = kWithDerivatives ? points_.back() : scratch;
+    compute_touch<S>(contact, numbers, surface, pair.motion, point, x_A, radius,
+                     kWithDerivatives ? TouchDetail::kDerivatives : TouchDetail::kForce, touching);
+    touch(contact, touching, summary, pair.wrenches);
   };
   if (rolls) {
     add(-1, Vector3<S>::Zero(), mechanism.sizes(0, contact.link));
@@ -124,16 +135,16 @@ void ContactForces<S>::run_pair(const Mechanism<S>& mechanism, int index) {
       }
     }
   }
-  pair.count = points_.size() - pair.first;
-  if (pair.count == 0) {
+  if (summary.active == 0) {
     return;
   }
   wrenches_[a] += pair.wrenches.on_a;
   if (contact.other >= 0) {
     wrenches_[static_cast<std::size_t>(contact.other)] += pair.wrenches.on_b;
   }
-  ++active_;
   if constexpr (kWithDerivatives) {
+    pair.count = points_.size() - pair.first;
+    ++active_;
     PairStiffness<S>& stiffness = pair.stiffness;
     for (Matrix6<S>* matrix : {&stiffness.K_a, &stiffness.C_a, &stiffness.K_b, &stiffness.C_b}) {
       matrix->setZero();

@@ -43,7 +43,7 @@ struct ActivePair {
 /// what a person wants to know of them.
 ///
 /// A pair far apart costs one distance; a point that does not touch costs one distance. Sized once
-/// and reused: evaluations allocate nothing once the number of touching points has been seen.
+/// and reused: evaluations allocate nothing while no more than a thousand points touch at once.
 template <Scalar S>
 class ContactForces {
  public:

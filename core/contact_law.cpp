@@ -37,6 +37,9 @@ ScalarLaw<S> normal_law(const LawChoice& law, const LawNumbers<S>& k, const S& d
 template <Scalar S>
 ScalarLaw<S> friction_bound(const LawChoice& law, const LawNumbers<S>& k, const S& d,
                             const ScalarLaw<S>& normal) {
+  if (normal.value == 0.0 && !law.adhesion) {
+    return {};  // nothing presses
+  }
   if (law.normal == NormalLaw::kLinear) {
     const S depth = -d;
     return {k.mu * k.kn * depth, -k.mu * k.kn, S(0.0), k.mu * depth, k.kn * depth, S(0.0), S(0.0)};

@@ -41,10 +41,9 @@ Matrix6<S> carried_twist(const Vector6<S>& V) {
 }  // namespace
 
 template <Scalar S>
-TouchingPoint<S> touching_point(const Contact& contact, const LawNumbers<S>& numbers,
-                                const SurfaceDistance<S>& surface, const PairMotion<S>& motion,
-                                int index, const Vector3<S>& x_A, const S& radius) {
-  TouchingPoint<S> at;
+void compute_touch(const Contact& contact, const LawNumbers<S>& numbers,
+                   const SurfaceDistance<S>& surface, const PairMotion<S>& motion, int index,
+                   const Vector3<S>& x_A, const S& radius, TouchDetail how, TouchingPoint<S>& at) {
   at.index = index;
   at.lever = motion.a.X_WB.R * x_A + motion.a.X_WB.p;
   const Matrix3<S>& R = motion.b.X_WB.R;
@@ -58,14 +57,17 @@ TouchingPoint<S> touching_point(const Contact& contact, const LawNumbers<S>& num
     sample.d -= radius;
   }
   at.d = sample.d;
-  at.gradient = R * sample.gradient;
-  at.dn_dx = R * sample.dn_dx * R.transpose();
   Vector3<S> u = motion.relative_velocity(at.x);
   if (contact.reaction == Reaction::kSurface) {
     u += at.d * Vector3<S>(motion.b.V.template head<3>()).cross(at.n);
   }
+  if (how == TouchDetail::kForce) {
+    at.force = contact_force<S>(law_of(contact), numbers, at.d, at.n, u);
+    return;
+  }
+  at.gradient = R * sample.gradient;
+  at.dn_dx = R * sample.dn_dx * R.transpose();
   at.force = contact_force<S>(law_of(contact), numbers, at.d, at.n, u, at.law);
-  return at;
 }
 
 template <Scalar S>
@@ -150,16 +152,16 @@ PairWrenches<S> wrench_change(Reaction reaction, const PairMotion<S>& motion,
           spatial<S>(-x_s.cross(f0) - arm.cross(f), -f)};
 }
 
-#define HBAR_INSTANTIATE(S)                                                                       \
-  template TouchingPoint<S> touching_point(const Contact&, const LawNumbers<S>&,                  \
-                                           const SurfaceDistance<S>&, const PairMotion<S>&, int,  \
-                                           const Vector3<S>&, const S&);                          \
-  template PointSlopes<S> point_slopes(Reaction, const PairMotion<S>&, const TouchingPoint<S>&);  \
-  template void add_wrenches(Reaction, const TouchingPoint<S>&, PairWrenches<S>&);                \
-  template void add_stiffness(Reaction, const PairMotion<S>&, const TouchingPoint<S>&,            \
-                              PairStiffness<S>&);                                                 \
-  template void complete(Reaction, const PairMotion<S>&, PairStiffness<S>&);                      \
-  template PairWrenches<S> wrench_change(Reaction, const PairMotion<S>&, const TouchingPoint<S>&, \
+#define HBAR_INSTANTIATE(S)                                                                        \
+  template void compute_touch(const Contact&, const LawNumbers<S>&, const SurfaceDistance<S>&,     \
+                              const PairMotion<S>&, int, const Vector3<S>&, const S&, TouchDetail, \
+                              TouchingPoint<S>&);                                                  \
+  template PointSlopes<S> point_slopes(Reaction, const PairMotion<S>&, const TouchingPoint<S>&);   \
+  template void add_wrenches(Reaction, const TouchingPoint<S>&, PairWrenches<S>&);                 \
+  template void add_stiffness(Reaction, const PairMotion<S>&, const TouchingPoint<S>&,             \
+                              PairStiffness<S>&);                                                  \
+  template void complete(Reaction, const PairMotion<S>&, PairStiffness<S>&);                       \
+  template PairWrenches<S> wrench_change(Reaction, const PairMotion<S>&, const TouchingPoint<S>&,  \
                                          const PointChange<S>&);
 HBAR_INSTANTIATE(double)
 HBAR_INSTANTIATE(Dual)

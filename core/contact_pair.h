@@ -76,15 +76,16 @@ struct PairStiffness {
   Eigen::Matrix<S, 6, 3> E_a, E_b;
 };
 
-/// Force of a point that touches, with all that derivatives need.
+/// Force of a point that touches.
 ///
 /// @param index, x_A  the point and its place in A's frame; index −1: a ball's centre, whose
 ///                    deepest point (radius below it) touches
+/// @param how         what else to fill in: gradient, dn_dx and the law's derivatives, or nothing
+enum class TouchDetail { kForce, kDerivatives };
 template <Scalar S>
-[[nodiscard]] TouchingPoint<S> touching_point(const Contact& contact, const LawNumbers<S>& numbers,
-                                              const SurfaceDistance<S>& surface,
-                                              const PairMotion<S>& motion, int index,
-                                              const Vector3<S>& x_A, const S& radius);
+void compute_touch(const Contact& contact, const LawNumbers<S>& numbers,
+                   const SurfaceDistance<S>& surface, const PairMotion<S>& motion, int index,
+                   const Vector3<S>& x_A, const S& radius, TouchDetail how, TouchingPoint<S>& out);
 
 /// δf by a displacement δx of the point relative to B, at a fixed relative twist in B's frame, and
 /// δx_s of the point at which B reacts.

@@ -85,7 +85,10 @@ void TactileReadings<S>::for_each_touch(const Mechanism<S>& mechanism, const Mot
       const Vector3<S> x_B = X_BA.R * x_A + X_BA.p;
       const Eigen::Vector3d place = x_B.unaryExpr([](const S& entry) { return value_of(entry); });
       if (surface.touches(surface.lower_bound(place))) {
-        visit(side, pair, i, touching_point<S>(contact, numbers, surface, pair, i, x_A, S(0.0)));
+        TouchingPoint<S> touching;
+        compute_touch<S>(contact, numbers, surface, pair, i, x_A, S(0.0), TouchDetail::kDerivatives,
+                         touching);
+        visit(side, pair, i, touching);
       }
     }
   }

@@ -104,7 +104,8 @@ TEST_P(EveryModelsParameters, HaveARemainderOfSecondOrder) {
     d[i] = random.between(-0.05, 0.05);
   }
   const auto along = [&](double e) { return z.dot(residual_at(p + e * d)); };
-  EXPECT_NEAR(testing::taylor_slope(along, z.dot(columns() * d), 1e-1), 2.0, 0.05);
+  // Small enough that no contact starts, ends or slips on the way.
+  EXPECT_NEAR(testing::taylor_slope(along, z.dot(columns() * d), 2e-3), 2.0, 0.05);
 }
 
 TEST_P(EveryModelsParameters, HaveAGradientThatIsTheTransposeOfTheirColumns) {
@@ -142,6 +143,15 @@ TEST_P(EveryModelsParameters, TouchExactlyTheRowsTheyOwn) {
     const std::string name = set[block.first].name;
     for (const int l : touched[b]) {
       EXPECT_TRUE(std::binary_search(rows.begin(), rows.end(), l)) << name << " row " << l;
+    }
+    // Which contacts happen to touch is not for rows to know.
+    const bool contact =
+        block.kind != ParameterKind::kStiffness && block.kind != ParameterKind::kDamping &&
+        block.kind != ParameterKind::kMass && block.kind != ParameterKind::kInertia &&
+        block.kind != ParameterKind::kMotorP && block.kind != ParameterKind::kMotorD &&
+        block.kind != ParameterKind::kGravity;
+    if (contact) {
+      continue;
     }
     for (const int l : rows) {
       // A moment of inertia gives no force, so that a translation never feels it.
