@@ -13,6 +13,7 @@ struct ScalarLaw {
   S by_mu = S(0.0);
   S by_damping = S(0.0);
   S by_scale = S(0.0);
+  bool pulls = false;  // at d = 0: as soon as there is depth
 };
 
 template <Scalar S>
@@ -30,21 +31,22 @@ ScalarLaw<S> normal_law(const LawChoice& law, const LawNumbers<S>& k, const S& d
            k.scale * rate * d,
            pressure};
   }
-  return out.value < 0.0 && !law.adhesion ? ScalarLaw<S>{} : out;
+  out.pulls = out.value < 0.0 || (out.value == 0.0 && out.by_d > 0.0);
+  return out.pulls && !law.adhesion ? ScalarLaw<S>{.pulls = true} : out;
 }
 
 /// The bound on friction: μ |f_n|; of the linear law μ k_n |d|.
 template <Scalar S>
 ScalarLaw<S> friction_bound(const LawChoice& law, const LawNumbers<S>& k, const S& d,
                             const ScalarLaw<S>& normal) {
-  if (normal.value == 0.0 && !law.adhesion) {
+  if (normal.pulls && !law.adhesion) {
     return {};  // nothing presses
   }
   if (law.normal == NormalLaw::kLinear) {
     const S depth = -d;
     return {k.mu * k.kn * depth, -k.mu * k.kn, S(0.0), k.mu * depth, k.kn * depth, S(0.0), S(0.0)};
   }
-  const S slope = normal.value < 0.0 ? -k.mu : k.mu;
+  const S slope = normal.pulls ? -k.mu : k.mu;
   return {slope * normal.value,
           slope * normal.by_d,
           slope * normal.by_rate,
