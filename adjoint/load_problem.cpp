@@ -1,5 +1,6 @@
 #include "hbar/adjoint/load_problem.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -49,13 +50,24 @@ ObjectiveChoice choose_objective(const Model& model, const LoadOptions& options)
     throw InvalidInput(
         "objective variables: the scene has none; add an <endeffector>, or take final-position");
   }
+  if (options.objective == ObjectiveChoice::kTactile && model.tactile_count() == 0) {
+    throw InvalidInput(
+        "objective tactile: the scene has no sensor; add a <tactile>, or take another objective");
+  }
   return options.objective.value_or(has_variables ? ObjectiveChoice::kVariables
                                                   : ObjectiveChoice::kFinalPosition);
 }
 
 Objective make_objective(ObjectiveChoice choice) {
-  return Objective(choice == ObjectiveChoice::kVariables ? squared_variables()
-                                                         : squared_final_position());
+  switch (choice) {
+    case ObjectiveChoice::kVariables:
+      return Objective(squared_variables());
+    case ObjectiveChoice::kFinalPosition:
+      return Objective(squared_final_position());
+    case ObjectiveChoice::kTactile:
+      return Objective(squared_tactile());
+  }
+  throw InvalidInput("load_problem: unknown choice of objective");
 }
 
 LoadedProblem make_problem(Model model, const SimulationOptions& simulation,
@@ -70,14 +82,44 @@ LoadedProblem make_problem(Model model, const SimulationOptions& simulation,
   return {{std::move(simulator), make_objective(objective), std::move(inputs)}, objective, {}, {}};
 }
 
+/// Names of the files that a body is made from.
+std::vector<std::string> files_of(const scene::Body& body) {
+  std::vector<std::string> names;
+  std::optional<std::string> contacts;
+  if (const auto* mesh = std::get_if<scene::MeshBody>(&body.shape)) {
+    names.push_back(mesh->filename);
+    contacts = mesh->contacts;
+  }
+  if (const auto* abstract = std::get_if<scene::AbstractBody>(&body.shape)) {
+    contacts = abstract->contacts;
+    if (abstract->collision) {
+      names.push_back(abstract->collision->contacts);
+    }
+  }
+  if (contacts) {
+    names.push_back(*contacts);
+  }
+  return names;
+}
+
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& path,
                                             const scene::Scene& scene) {
   std::vector<std::filesystem::path> files = {path};
+  const auto add = [&files, &scene](const std::string& name) {
+    const std::filesystem::path file = scene.folder / name;
+    if (std::find(files.begin(), files.end(), file) == files.end()) {
+      files.push_back(file);
+    }
+  };
   for (const scene::Robot& robot : scene.description.robots) {
     for (const scene::Link& link : robot.links) {
-      if (const auto* mesh = std::get_if<scene::MeshBody>(&link.body.shape)) {
-        files.push_back(scene.folder / mesh->filename);
-      }
+      const std::vector<std::string> names = files_of(link.body);
+      std::for_each(names.begin(), names.end(), add);
+    }
+  }
+  for (const scene::TactileSensor& sensor : scene.description.tactile_sensors) {
+    if (const auto* list = std::get_if<scene::PointList>(&sensor.points)) {
+      add(list->spec);
     }
   }
   return files;

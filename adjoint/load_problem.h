@@ -18,8 +18,9 @@ enum class ParameterChoice {
 
 /// An objective that needs no numbers of its own.
 enum class ObjectiveChoice {
-  kVariables,     ///< ½ Σ_{k=1…N} ‖v_k‖²
-  kFinalPosition  ///< ½ ‖q_N‖²
+  kVariables,      ///< ½ Σ_{k=1…N} ‖v_k‖²
+  kFinalPosition,  ///< ½ ‖q_N‖²
+  kTactile         ///< ½ Σ_{k=1…N} ‖tactile_k‖²
 };
 
 /// What to take otherwise than a scene says, or than is usual where a scene cannot say it.
@@ -40,7 +41,7 @@ struct LoadedProblem {
   Problem problem;
   ObjectiveChoice objective;                 ///< the one that was taken
   std::vector<std::string> notices;          ///< what the person should know, each `file:line: …`
-  std::vector<std::filesystem::path> files;  ///< read for it, the scene first
+  std::vector<std::filesystem::path> files;  ///< read for it, the scene first; each once
 };
 
 /// An option that does not suit the scene, whereas the scene itself is right.

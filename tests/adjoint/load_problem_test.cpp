@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 
@@ -79,6 +80,65 @@ TEST_F(LoadProblem, ObjectiveFollowsTheVariables) {
   EXPECT_EQ(load_problem(file, options).objective, ObjectiveChoice::kFinalPosition);
   options.objective = ObjectiveChoice::kVariables;
   EXPECT_THROW(static_cast<void>(load_problem(hinge(), options)), InvalidOption);
+}
+
+TEST_F(LoadProblem, SensorsMayBeAnObjectiveAndAreNeverTheUsualOne) {
+  const auto file = scene("<joint name=\"j\" type=\"prismatic\" axis=\"0 0 1\"/>",
+                          "<sensor><tactile body=\"a\" name=\"skin\" type=\"rect_array\" "
+                          "rect_pos0=\"0 0 0\" rect_pos1=\"1 1 0\" axis0=\"1 0 0\" "
+                          "axis1=\"0 1 0\" resolution=\"2 3\"/></sensor>\n");
+  const LoadedProblem usual = load_problem(file);
+  EXPECT_EQ(usual.problem.simulator.model().tactile_count(), 18);
+  EXPECT_EQ(usual.objective, ObjectiveChoice::kFinalPosition);
+  LoadOptions options;
+  options.objective = ObjectiveChoice::kTactile;
+  const LoadedProblem asked = load_problem(file, options);
+  EXPECT_EQ(asked.objective, ObjectiveChoice::kTactile);
+  TrajectoryValues values;
+  values.tactile = Eigen::MatrixXd::Constant(18, 3, 2.0);
+  values.q = Eigen::MatrixXd::Constant(1, 3, 7.0);
+  EXPECT_EQ(asked.problem.objective.value(values), 0.5 * 2 * 18 * 4.0);  // the start is no step
+  try {
+    static_cast<void>(load_problem(hinge(), options));
+    ADD_FAILURE() << "was loaded";
+  } catch (const InvalidOption& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "objective tactile: the scene has no sensor; add a <tactile>, or take another "
+              "objective");
+  }
+}
+
+TEST_F(LoadProblem, NamesEveryFileItReads) {
+  const auto write = [this](const char* name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+  };
+  write("box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  for (const char* name : {"corners.txt", "own.txt", "more.txt"}) {
+    write(name, "1\n0 0 0\n");
+  }
+  write("skin.txt", "1\n0 0 0 1 0 0 0 1 0\n");
+  write("files.xml",
+        "<redmax><robot>"
+        "<link name=\"a\"><joint name=\"j\" type=\"prismatic\" axis=\"0 0 1\"/>"
+        "<body name=\"m\" type=\"mesh\" filename=\"box.obj\" contacts=\"corners.txt\"/>"
+        "<link name=\"b\"><joint name=\"k\" type=\"fixed\"/>"
+        "<body name=\"n\" type=\"mesh\" filename=\"box.obj\"/></link>"
+        "<link name=\"c\"><joint name=\"l\" type=\"fixed\"/>"
+        "<body name=\"o\" type=\"abstract\" mass=\"1\" inertia=\"1 1 1\" contacts=\"own.txt\" "
+        "mesh=\"drawn.obj\"><collision contacts=\"more.txt\"/></body></link>"
+        "</link></robot>"
+        "<sensor><tactile body=\"o\" name=\"skin\" type=\"abstract\" spec=\"skin.txt\"/></sensor>"
+        "</redmax>");
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : load_problem(folder_ / "files.xml").files) {
+    EXPECT_EQ(file.parent_path(), folder_);
+    names.push_back(file.filename());
+  }
+  ASSERT_FALSE(names.empty());
+  EXPECT_EQ(names.front(), "files.xml");
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"box.obj", "corners.txt", "files.xml", "more.txt",
+                                             "own.txt", "skin.txt"}));
 }
 
 TEST_F(LoadProblem, TellsOptionsFromScenes) {
