@@ -10,6 +10,7 @@
 #include "hbar/core/integrator.h"
 #include "hbar/core/nearest_name.h"
 #include "hbar/scene/numbers.h"
+#include "labels.h"
 #include "process.h"
 
 namespace hbar::tool {
@@ -22,7 +23,8 @@ struct CommandRow {
 };
 
 constexpr std::array<CommandRow, 4> kCommands = {{
-    {Command::kInfo, "info", "Shows a scene's links, coordinates, motors, variables, parameters."},
+    {Command::kInfo, "info",
+     "Shows a scene's links, coordinates, motors, variables, contacts, sensors, parameters."},
     {Command::kSimulate, "simulate", "Simulates a scene and shows or writes the trajectory."},
     {Command::kGradient, "gradient", "Simulates a scene and differentiates an objective of it."},
     {Command::kCheck, "check", "Compares the gradient with finite differences, class by class."},
@@ -50,11 +52,12 @@ constexpr std::array<OptionRow, 11> kOptions = {{
      "Design parameters: mask (the scene's design_params), all, none, or a list of names (mask)."},
     {"--objective", "NAME", kInRuns,
      "variables: half the sum of squared variables of all steps; final-position: half the squared "
-     "last q (variables where there are any)."},
+     "last q; tactile: half the sum of squared sensor readings of all steps (variables where there "
+     "are any, else final-position)."},
     {"--newton-tol", "X", kInRuns, "Newton's bound on the residual's norm (the scene's)."},
     {"--out", "FILE", kInRuns, "Writes the results as JSON; - is standard output."},
     {"--csv", "FILE", kInSimulate | kInGradient,
-     "Writes q, qdot and variables of every step as CSV; - is standard output."},
+     "Writes q, qdot, variables and sensor readings of every step as CSV; - is standard output."},
 }};
 
 [[noreturn]] void usage(const std::string& message) { throw ToolError(ExitCode::kUsage, message); }
@@ -130,14 +133,13 @@ std::optional<ObjectiveChoice> objective(const Given& given) {
   if (!text) {
     return std::nullopt;
   }
-  if (*text == "variables") {
-    return ObjectiveChoice::kVariables;
-  }
-  if (*text != "final-position") {
+  const std::vector<std::string>& names = objective_names();
+  const auto place = std::find(names.begin(), names.end(), *text);
+  if (place == names.end()) {
     usage(fmt::format("--objective: there is no \"{}\"; {}", scene::quotable(*text),
-                      unknown_name_hint(*text, {"variables", "final-position"})));
+                      unknown_name_hint(*text, names)));
   }
-  return ObjectiveChoice::kFinalPosition;
+  return static_cast<ObjectiveChoice>(place - names.begin());
 }
 
 void read_parameters(const Given& given, LoadOptions& load) {

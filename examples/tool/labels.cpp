@@ -38,8 +38,41 @@ std::vector<std::string> variable_names(const Model& model) {
   return names;
 }
 
+std::vector<std::string> contact_names(const Model& model) {
+  std::vector<std::string> names;
+  for (const Contact& contact : model.contacts()) {
+    names.push_back(contact.name);
+  }
+  return names;
+}
+
+std::vector<std::string> tactile_names(const Model& model) {
+  std::vector<std::string> names;
+  for (const TactileSensor& sensor : model.tactile_sensors()) {
+    for (Eigen::Index i = 0; i < sensor.points.cols(); ++i) {
+      for (const char* reading : {".shear0", ".shear1", ".normal"}) {
+        names.push_back(concat(sensor.name, '.', i, reading));
+      }
+    }
+  }
+  return names;
+}
+
 std::string unit_system(const Model& model) {
   return model.units() == Units::kCentimetreGram ? "cm-g" : "m-kg";
+}
+
+std::string_view force_unit(const Model& model) {
+  return model.units() == Units::kCentimetreGram ? "dyn" : "N";
+}
+
+const std::vector<std::string>& objective_names() {
+  static const std::vector<std::string> names = {"variables", "final-position", "tactile"};
+  return names;
+}
+
+const std::string& objective_name(ObjectiveChoice choice) {
+  return objective_names().at(static_cast<std::size_t>(choice));
 }
 
 }  // namespace hbar::tool

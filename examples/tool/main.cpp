@@ -86,6 +86,9 @@ Results run(Problem& problem, bool with_gradient) {
   out.status = status_word(out.report.status);
   out.message = out.report.message;
   out.values = problem.simulator.values(trajectory);
+  if (problem.simulator.model().contact_count() > 0) {
+    out.contact = problem.simulator.contact_history(trajectory);
+  }
   for (int k = 0; k < trajectory.step_count(); ++k) {
     out.newton.push_back(trajectory.newton_iterations(k));
   }

@@ -12,12 +12,14 @@ namespace hbar::tool {
 
 /// What a run gave: the whole of it, or the part that was reached.
 struct Results {
-  std::string status;           ///< "converged", "interrupted", "step_failed", "gradient_failed"
-  std::string message;          ///< what went wrong; empty if nothing did
-  RolloutReport report;         ///< of the simulation
-  TrajectoryValues values;      ///< of the steps done
-  std::vector<int> newton;      ///< corrections of each step                  [steps done]
-  std::optional<double> value;  ///< of the objective; of a whole trajectory only
+  std::string status;       ///< "converged", "interrupted", "step_failed", "gradient_failed"
+  std::string message;      ///< what went wrong; empty if nothing did
+  RolloutReport report;     ///< of the simulation
+  TrajectoryValues values;  ///< of the steps done
+  std::vector<int> newton;  ///< corrections of each step                  [steps done]
+  /// What the contacts did at the steps' ends; empty without contacts.
+  std::vector<std::vector<ContactSummary>> contact;  ///< [step 0 … steps done][contact]
+  std::optional<double> value;       ///< of the objective; of a whole trajectory only
   std::optional<Gradient> gradient;  ///< only where it was asked for and computed
 };
 
@@ -29,7 +31,7 @@ struct Results {
 [[nodiscard]] std::string check_json(const LoadedProblem& loaded,
                                      const GradientCheckReport& report);
 
-/// Time, q, qdot and variables of every step as CSV with a header, 17 digits each.
+/// Time, q, qdot, variables and sensor readings of every step as CSV with a header, 17 digits each.
 [[nodiscard]] std::string results_csv(const LoadedProblem& loaded, const Results& results);
 
 }  // namespace hbar::tool

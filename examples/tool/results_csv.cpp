@@ -18,11 +18,14 @@ std::string results_csv(const LoadedProblem& loaded, const Results& results) {
   for (const std::string& name : variable_names(model)) {
     text += "," + name;
   }
+  for (const std::string& name : tactile_names(model)) {
+    text += "," + name;
+  }
   text += '\n';
   for (Eigen::Index k = 0; k < values.q.cols(); ++k) {
     const auto end = std::back_inserter(text);
     fmt::format_to(end, "{:.17g}", static_cast<double>(k) * values.h);
-    for (const Eigen::MatrixXd* block : {&values.q, &values.qdot, &values.v}) {
+    for (const Eigen::MatrixXd* block : {&values.q, &values.qdot, &values.v, &values.tactile}) {
       for (const double entry : block->col(k)) {
         fmt::format_to(end, ",{:.17g}", entry);
       }

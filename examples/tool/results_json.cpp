@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "labels.h"
@@ -45,7 +46,8 @@ class Writer {
   }
 
   void object(const Json& json, int depth) {
-    const bool flat = depth > 1;
+    const bool flat = std::none_of(json.begin(), json.end(),
+                                   [](const Json& member) { return member.is_structured(); });
     text_ += '{';
     const char* separator = "";
     for (const auto& [key, member] : json.items()) {
@@ -128,8 +130,25 @@ Json header(const LoadedProblem& loaded) {
           {"newton_tol", simulator.options().newton.tol}};
 }
 
-std::string objective_name(const LoadedProblem& loaded) {
-  return loaded.objective == ObjectiveChoice::kVariables ? "variables" : "final-position";
+/// By contact, what it did after each step.
+Json contact_json(const Model& model, const Results& results) {
+  Json out = Json::object();
+  for (int i = 0; i < model.contact_count(); ++i) {
+    const auto contact = static_cast<std::size_t>(i);
+    const auto history = [&results, contact](auto member) {
+      Json numbers = Json::array();
+      for (std::size_t k = 1; k < results.contact.size(); ++k) {
+        numbers.push_back(results.contact[k][contact].*member);
+      }
+      return numbers;
+    };
+    out[model.contact(i).name] = {{"active", history(&ContactSummary::active)},
+                                  {"sticking", history(&ContactSummary::sticking)},
+                                  {"penetration", history(&ContactSummary::penetration)},
+                                  {"normal_force", history(&ContactSummary::normal_force)},
+                                  {"friction_force", history(&ContactSummary::friction_force)}};
+  }
+  return out;
 }
 
 }  // namespace
@@ -149,8 +168,12 @@ std::string results_json(const LoadedProblem& loaded, const Results& results) {
   out["q"] = rows(values.q);
   out["qdot"] = rows(values.qdot);
   out["variables"] = rows(values.v.rightCols(values.v.cols() - 1));
+  out["contacts"] = contact_names(model);
+  out["contact"] = contact_json(model, results);
+  out["tactile_names"] = tactile_names(model);
+  out["tactile"] = rows(values.tactile.rightCols(values.tactile.cols() - 1));
   out["newton_iterations"] = results.newton;
-  out["objective_kind"] = objective_name(loaded);
+  out["objective_kind"] = objective_name(loaded.objective);
   if (results.value) {
     out["objective"] = *results.value;
   }
@@ -163,7 +186,7 @@ std::string results_json(const LoadedProblem& loaded, const Results& results) {
 
 std::string check_json(const LoadedProblem& loaded, const GradientCheckReport& report) {
   Json out = header(loaded);
-  out["objective_kind"] = objective_name(loaded);
+  out["objective_kind"] = objective_name(loaded.objective);
   out["passed"] = report.passed();
   out["classes"] = Json::array();
   for (const GradientCheckRow& row : report.rows) {

@@ -105,6 +105,79 @@ std::string variable_lines(const Model& model) {
                      table.text());
 }
 
+std::string counted_points(Eigen::Index count, const std::string& body) {
+  return fmt::format("{} {} of {}", count, count == 1 ? "point" : "points", body);
+}
+
+std::string coefficients(const ContactCoefficients& c) {
+  return fmt::format("kn {}, kt {}, mu {}, damping {}", number(c.kn), number(c.kt), number(c.mu),
+                     number(c.damping));
+}
+
+std::string vector(const Eigen::Vector3d& v) {
+  return fmt::format("{} {} {}", number(v[0]), number(v[1]), number(v[2]));
+}
+
+/// The points that a contact tests.
+std::string points_of(const Model& model, const Contact& contact) {
+  const Body& body = model.link(contact.link).body;
+  const bool rolls =
+      std::holds_alternative<Plane>(contact.surface) && std::holds_alternative<Sphere>(body.shape);
+  return rolls ? "deepest point of " + body.name
+               : counted_points(body.contact_points.cols(), body.name);
+}
+
+/// What it tests them against.
+std::string surface_of(const Model& model, const Contact& contact) {
+  const std::string body = contact.other < 0 ? "ground" : model.link(contact.other).body.name;
+  if (const auto* plane = std::get_if<Plane>(&contact.surface)) {
+    return fmt::format("{}: plane through {}, normal {}", body, vector(plane->point),
+                       vector(plane->normal));
+  }
+  const auto* own = std::get_if<OwnShape>(&contact.surface);
+  if (own == nullptr) {
+    return body + ": mesh";
+  }
+  const Shape& shape = model.link(contact.other).body.shape;
+  return std::holds_alternative<Cylinder>(shape) && !own->caps ? body + " without end faces" : body;
+}
+
+std::string law_words(const Contact& contact) {
+  std::string text = contact.normal_law == NormalLaw::kLinear ? "linear" : "document";
+  if (contact.friction_law == FrictionLaw::kSmooth) {
+    text += fmt::format(", smooth friction of width {}", number(contact.friction_width));
+  }
+  text += contact.adhesion ? "" : ", no adhesion";
+  return contact.reaction == Reaction::kSurface ? text + ", reaction at the surface" : text;
+}
+
+std::string contact_lines(const Model& model) {
+  Table table;
+  for (const Contact& contact : model.contacts()) {
+    table.add({contact.name, points_of(model, contact), surface_of(model, contact),
+               coefficients(contact.coefficients), law_words(contact)});
+  }
+  return fmt::format("contacts ({}): name, points, against, coefficients, law\n{}",
+                     model.contact_count(), table.text());
+}
+
+std::string sensor_lines(const Model& model) {
+  Table table;
+  for (const TactileSensor& sensor : model.tactile_sensors()) {
+    std::set<std::string> felt;
+    for (const Contact& contact : model.contacts()) {
+      if (contact.other >= 0 && contact.other != sensor.link) {
+        felt.insert(model.link(contact.other).body.name);
+      }
+    }
+    table.add({sensor.name, counted_points(sensor.points.cols(), model.link(sensor.link).body.name),
+               felt.empty() ? "nothing" : fmt::format("{}", fmt::join(felt, ", ")),
+               coefficients(sensor.coefficients)});
+  }
+  return fmt::format("sensors ({}): name, points, bodies it feels, coefficients\n{}",
+                     model.tactile_sensors().size(), table.text());
+}
+
 std::string parameter_lines(const Model& model, const ParameterSet& selected) {
   std::set<std::string> marked;
   for (const Parameter& parameter : selected.parameters()) {
@@ -128,6 +201,63 @@ std::string control_gradient(const Model& model, const Eigen::MatrixXd& u) {
   return fmt::format("norm {}, largest {} ({}, step {})", number(u.norm()),
                      number(u(control, step)), model.control_name(static_cast<int>(control)),
                      step + 1);
+}
+
+/// What each contact did from the start to the end.
+std::string contact_table(const Model& model, const Results& results) {
+  Table table;
+  for (int i = 0; i < model.contact_count(); ++i) {
+    std::size_t first = results.contact.size();
+    std::size_t deepest = 0;
+    double normal_force = 0.0;
+    double active = 0.0;
+    double sticking = 0.0;
+    const auto at = [&results, i](std::size_t k) -> const ContactSummary& {
+      return results.contact[k][static_cast<std::size_t>(i)];
+    };
+    for (std::size_t k = 0; k < results.contact.size(); ++k) {
+      first = at(k).active > 0 ? std::min(first, k) : first;
+      deepest = at(k).penetration > at(deepest).penetration ? k : deepest;
+      normal_force = std::max(normal_force, at(k).normal_force);
+      active += at(k).active;
+      sticking += at(k).sticking;
+    }
+    if (active == 0.0) {
+      table.add({model.contact(i).name, "no touch"});
+      continue;
+    }
+    const auto time = [&results](std::size_t k) {
+      return fmt::format("t = {} s", number(static_cast<double>(k) * results.values.h));
+    };
+    table.add({model.contact(i).name, "from " + time(first),
+               fmt::format("{} {} at {}", number(at(deepest).penetration),
+                           length_unit(model.units()), time(deepest)),
+               fmt::format("{} {}", number(normal_force), force_unit(model)),
+               fmt::format("{:.0f} %", 100.0 * sticking / active)});
+  }
+  return "contacts: first touch, deepest point, largest normal force, points that stick\n" +
+         table.text();
+}
+
+/// The reading of largest magnitude of each sensor.
+std::string sensor_table(const Model& model, const TrajectoryValues& values) {
+  Table table;
+  const std::vector<std::string> names = tactile_names(model);
+  Eigen::Index first = 0;
+  for (const TactileSensor& sensor : model.tactile_sensors()) {
+    const Eigen::Index count = 3 * sensor.points.cols();
+    Eigen::Index row = 0;
+    Eigen::Index k = 0;
+    values.tactile.middleRows(first, count).cwiseAbs().maxCoeff(&row, &k);
+    const double largest = values.tactile(first + row, k);
+    table.add({sensor.name, fmt::format("{} {}", number(largest), force_unit(model)),
+               largest == 0.0
+                   ? ""
+                   : fmt::format("{} at t = {} s", names[static_cast<std::size_t>(first + row)],
+                                 number(static_cast<double>(k) * values.h))});
+    first += count;
+  }
+  return "sensors: largest reading\n" + table.text();
 }
 
 std::string gradient_lines(const LoadedProblem& loaded, const Gradient& gradient) {
@@ -156,11 +286,11 @@ std::string gradient_lines(const LoadedProblem& loaded, const Gradient& gradient
 std::string describe(const Model& model, const ParameterSet& selected) {
   const Eigen::Vector3d& g = model.gravity();
   const std::string_view length = length_unit(model.units());
-  return fmt::format("{}: {} coordinates, units {} ({}, {}, s), gravity {} {} {} {}/s²\n\n",
+  return fmt::format("{}: {} coordinates, units {} ({}, {}, s), gravity {} {}/s²\n\n",
                      model.name().empty() ? "(no name)" : model.name(), model.dof(),
-                     unit_system(model), length, mass_unit(model.units()), number(g[0]),
-                     number(g[1]), number(g[2]), length) +
+                     unit_system(model), length, mass_unit(model.units()), vector(g), length) +
          link_lines(model) + '\n' + motor_lines(model) + '\n' + variable_lines(model) + '\n' +
+         contact_lines(model) + '\n' + sensor_lines(model) + '\n' +
          parameter_lines(model, selected);
 }
 
@@ -197,11 +327,15 @@ std::string summarize(const LoadedProblem& loaded, const Results& results) {
                                          number(values.v(row, last)), length_unit(model.units()))});
   }
   text += fmt::format("from t = 0 to t = {} s\n{}", number(results.report.time), table.text());
+  if (model.contact_count() > 0) {
+    text += contact_table(model, results);
+  }
+  if (model.tactile_count() > 0) {
+    text += sensor_table(model, values);
+  }
   if (results.value) {
-    text += fmt::format(
-        "objective {}: {}\n",
-        loaded.objective == ObjectiveChoice::kVariables ? "variables" : "final-position",
-        fmt::format("{:.12g}", *results.value));
+    text +=
+        fmt::format("objective {}: {:.12g}\n", objective_name(loaded.objective), *results.value);
   }
   return results.gradient ? text + gradient_lines(loaded, *results.gradient) : text;
 }
