@@ -127,7 +127,7 @@ TEST_F(ToolResults, ParametersAreChosenByMaskOrByName) {
   EXPECT_EQ(names(""), masked);
   EXPECT_EQ(names("mask"), masked);
   EXPECT_EQ(names("none"), std::vector<std::string>());
-  EXPECT_EQ(names("all").size(), 21U);
+  EXPECT_EQ(names("all").size(), 24U);
   EXPECT_EQ(names("gravity.z, body.rod.inertia"),
             (std::vector<std::string>{"body.rod.inertia.x", "body.rod.inertia.y",
                                       "body.rod.inertia.z", "gravity.z"}));
