@@ -7,12 +7,19 @@
 namespace hbar {
 namespace {
 
+/// Whether two contacts ask for the same distance; with and without caps it is one.
+bool share_distance(const Contact& a, const Contact& b) {
+  const bool own =
+      std::holds_alternative<OwnShape>(a.surface) && std::holds_alternative<OwnShape>(b.surface);
+  return a.other == b.other && (own || a.surface == b.surface);
+}
+
 /// Distinct distance sides of a model's contacts that are bodies.
 std::vector<Contact> distance_sides(const Model& model) {
   std::vector<Contact> sides;
   for (const Contact& contact : model.contacts()) {
     const bool known = std::any_of(sides.begin(), sides.end(), [&contact](const Contact& other) {
-      return other.other == contact.other && other.surface == contact.surface;
+      return share_distance(other, contact);
     });
     if (contact.other >= 0 && !known) {
       sides.push_back(contact);
@@ -197,7 +204,7 @@ void TactileReadings<S>::pull_back(const Mechanism<S>& mechanism, const Paramete
         for (int k = 0; k < surface.size_count(); ++k) {
           const int index = set.index(ParameterKind::kSize, side.contact.other, k);
           if (index >= 0) {
-            const SizeRate<S> rate = surface.by_size(point.x_B, k);
+            const SizeRate<S> rate = surface.by_size(point.lever_B, k);
             const PointChange<S> by = {.d = rate.d, .n = pair.b.X_WB.R * rate.n};
             grad_p[index] += weight.dot(
                 wrench_change<S>(side.contact.reaction, pair, point, by).on_a.template tail<3>());
