@@ -1,6 +1,7 @@
 #include "hbar/core/parameters.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "hbar/core/error.h"
 #include "hbar/core/nearest_name.h"
@@ -130,6 +131,25 @@ std::string_view kind_name(ParameterKind kind) {
   return "";
 }
 
+namespace {
+
+/// Where list_parameters puts a kind of an owner: kinds that Table II has under one number, and
+/// both gains of a motor, stand together by owner.
+std::tuple<ParameterKind, int, ParameterKind> place(ParameterKind kind, int owner) {
+  switch (kind) {
+    case ParameterKind::kInertia:
+      return {ParameterKind::kMass, owner, kind};
+    case ParameterKind::kDamping:
+      return {ParameterKind::kStiffness, owner, kind};
+    case ParameterKind::kMotorD:
+      return {ParameterKind::kMotorP, owner, kind};
+    default:
+      return {kind, owner, kind};
+  }
+}
+
+}  // namespace
+
 ParameterSet::ParameterSet(std::vector<Parameter> parameters) : parameters_(std::move(parameters)) {
   for (int i = 0; i < size(); ++i) {
     const Parameter& parameter = (*this)[i];
@@ -196,10 +216,9 @@ int ParameterSet::find(std::string_view name) const {
 }
 
 int ParameterSet::index(ParameterKind kind, int owner, int component) const {
-  const auto block = std::lower_bound(blocks_.begin(), blocks_.end(), std::pair{kind, owner},
-                                      [](const ParameterBlock& b, const auto& wanted) {
-                                        return std::pair{b.kind, b.owner} < wanted;
-                                      });
+  const auto block = std::lower_bound(
+      blocks_.begin(), blocks_.end(), place(kind, owner),
+      [](const ParameterBlock& b, const auto& wanted) { return place(b.kind, b.owner) < wanted; });
   if (block == blocks_.end() || block->kind != kind || block->owner != owner) {
     return -1;
   }
