@@ -7,6 +7,7 @@
 #include <set>
 
 #include "hbar/core/error.h"
+#include "hbar/core/surface_points.h"
 #include "tests/core/random_model.h"
 #include "tests/support/numerics.h"
 
@@ -67,8 +68,11 @@ TEST(ParameterSet, ListsEverythingByTypeThenByLinkInFileOrder) {
                      "body.shin.inertia.y", "body.shin.inertia.z"},
                     {"joint.hip.stiffness", "joint.hip.damping", "joint.knee.stiffness",
                      "joint.knee.damping"},
+                    {"body.shin.contact_scale"},
                     {"motor.knee.P", "motor.knee.D"},
-                    {"gravity.x", "gravity.y", "gravity.z"}}));
+                    {"gravity.x", "gravity.y", "gravity.z"},
+                    {"body.thigh.size.x", "body.thigh.size.y", "body.thigh.size.z",
+                     "body.shin.radius"}}));
 }
 
 TEST(ParameterSet, HasNominalValuesUnitsAndBounds) {
@@ -106,7 +110,7 @@ TEST(ParameterSet, HasNominalValuesUnitsAndBounds) {
 }
 
 TEST(ParameterSet, IsMadeOfWholeBlocksInOrder) {
-  const ParameterSet set = ParameterSet::all(testing::random_model(1));
+  const ParameterSet set = ParameterSet::all(testing::random_contact_model(1));
   int next = 0;
   for (const ParameterBlock& block : set.blocks()) {
     EXPECT_EQ(block.first, next);
@@ -123,7 +127,7 @@ TEST(ParameterSet, IsMadeOfWholeBlocksInOrder) {
 }
 
 TEST(EveryParameterKind, IsListedWithANameOfItsOwn) {
-  const ParameterSet set = ParameterSet::all(leg());
+  const ParameterSet set = ParameterSet::all(testing::random_contact_model(1));
   std::set<std::string_view> names;
   for (const ParameterKind kind : parameter_kinds()) {
     names.insert(kind_name(kind));
@@ -139,7 +143,8 @@ TEST(ParameterSet, SelectsByMask) {
   EXPECT_EQ(names_of(ParameterSet::masked(leg())),
             joined({frame_names("body.thigh"),
                     {"body.shin.mass", "body.shin.inertia.x", "body.shin.inertia.y",
-                     "body.shin.inertia.z", "joint.knee.stiffness", "joint.knee.damping"}}));
+                     "body.shin.inertia.z", "joint.knee.stiffness", "joint.knee.damping",
+                     "body.shin.contact_scale"}}));
 }
 
 TEST(ParameterSet, SelectsByNamesAndPrefixesInTheOrderOfTheRegistry) {
@@ -151,6 +156,27 @@ TEST(ParameterSet, SelectsByNamesAndPrefixesInTheOrderOfTheRegistry) {
   EXPECT_EQ(ParameterSet::named(model, {"gravity", "gravity.x"}).size(), 3);
   EXPECT_EQ(ParameterSet::named(model, {"joint", "body", "motor", "gravity"}).size(),
             ParameterSet::all(model).size());
+}
+
+TEST(ParameterSet, FindsEveryComponentByItsKindAndOwner) {
+  const Model model = testing::random_contact_model(2);
+  const ParameterSet all = ParameterSet::all(model);
+  // Whole blocks, parts of blocks, and nothing.
+  for (const ParameterSet& set :
+       {all, ParameterSet::masked(model), ParameterSet(),
+        ParameterSet::named(model, {"body.b3.inertia.y", "joint.j3.translation.z", "gravity.y",
+                                    "body.b5.contact.2.x", "body.b5.contact.4.z", "body.b2.length",
+                                    "body.b6.mass", "joint.j1.damping"})}) {
+    const std::vector<std::string> names = names_of(set);
+    for (const Parameter& p : all.parameters()) {
+      const auto at = std::find(names.begin(), names.end(), p.name);
+      const int expected = at == names.end() ? -1 : static_cast<int>(at - names.begin());
+      EXPECT_EQ(set.index(p.kind, p.owner, p.component), expected) << p.name;
+    }
+    EXPECT_EQ(set.index(ParameterKind::kMass, model.link_count(), 0), -1);
+    EXPECT_EQ(set.index(ParameterKind::kMass, -1, 0), -1);
+    EXPECT_EQ(set.index(ParameterKind::kMass, 1, 1), -1);
+  }
 }
 
 TEST(ParameterSet, RefusesNamesThatMatchNothing) {
@@ -232,6 +258,119 @@ TEST(ApplyParameters, PutsEveryOtherNumberInItsPlace) {
   apply_parameters<double>(model, ParameterSet(), VectorXd(), mechanism);
   EXPECT_EQ(mechanism.mass[1], model.link(1).body.mass);
   EXPECT_EQ(mechanism.gravity, model.gravity());
+}
+
+TEST(ApplyParameters, PutsContactNumbersInTheirPlaces) {
+  const Model model = testing::random_contact_model(3);
+  const std::string contact = "contact." + model.contact(2).name;
+  const std::string body = "body." + model.link(4).body.name;
+  const ParameterSet set = ParameterSet::named(
+      model, {contact + ".kt", contact + ".damping", body + ".contact_scale", body + ".contact.3"});
+  VectorXd p = VectorXd::Zero(set.size());
+  p << 3.0, 4.0, 5.0, 6.0, 7.0, 8.0;  // the point, the scale, then the coefficients
+  auto mechanism = nominal_mechanism<double>(model);
+  const auto nominal = mechanism;
+  apply_parameters<double>(model, set, p, mechanism);
+  EXPECT_EQ(mechanism.contact_points[4].col(3), Eigen::Vector3d(3.0, 4.0, 5.0));
+  EXPECT_EQ(mechanism.contact_points[4].col(2), nominal.contact_points[4].col(2));
+  EXPECT_EQ(mechanism.contact_scale[4], 6.0);
+  EXPECT_EQ(mechanism.contact_scale[3], 1.0);
+  const ContactCoefficients& own = model.contact(2).coefficients;
+  EXPECT_EQ(mechanism.contact_coefficients.col(2), Eigen::Vector4d(own.kn, 7.0, own.mu, 8.0));
+  EXPECT_EQ(mechanism.contact_coefficients.col(1), nominal.contact_coefficients.col(1));
+  // The bound on how far points reach follows them.
+  EXPECT_DOUBLE_EQ(mechanism.contact_radius[4], Eigen::Vector3d(3.0, 4.0, 5.0).norm());
+}
+
+/// A body of every shape in turn, homogeneous, with contact points on its surface.
+Model resizable() {
+  ModelBuilder builder("resizable");
+  const std::vector<Shape> shapes = {Cuboid{{1.0, 2.0, 3.0}}, Sphere{0.5}, Cylinder{0.5, 2.0},
+                                     Capsule{0.4, 1.0}};
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    Body body = solid_body(concat("b", i), shapes[i], 3.0);
+    body.contact_points = surface_points(shapes[i], {.sphere = {2, 3}});
+    builder.add_link(-1, {.name = concat("j", i)}, body);
+    builder.add_contact({.link = static_cast<int>(i), .surface = Plane{}});
+  }
+  return builder.build();
+}
+
+TEST(ApplyParameters, LetsMassMomentsAndContactPointsFollowSizes) {
+  const Model model = resizable();
+  for (int link = 0; link < model.link_count(); ++link) {
+    const Body& body = model.link(link).body;
+    std::vector<std::string> names;
+    for (const std::string& size : size_names(body.shape)) {
+      names.push_back(concat("body.", body.name, '.', size));
+    }
+    const ParameterSet set = ParameterSet::named(model, names);
+    std::vector<double> sizes = sizes_of(body.shape);
+    VectorXd p(set.size());
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+      sizes[k] *= 1.0 + 0.2 * static_cast<double>(k + 1);
+      p[static_cast<Eigen::Index>(k)] = sizes[k];
+    }
+    const Shape larger = with_sizes(body.shape, sizes);
+    const MassProperties expected = solid_mass_properties(larger, 3.0);
+    const Eigen::Matrix3Xd points = surface_points(larger, {.sphere = {2, 3}});
+    auto mechanism = nominal_mechanism<double>(model);
+    apply_parameters<double>(model, set, p, mechanism);
+    EXPECT_NEAR(mechanism.mass[link], expected.mass, 1e-14 * expected.mass);
+    EXPECT_LT(relative_gap(mechanism.moments.col(link), expected.inertia), 1e-14);
+    EXPECT_LT(relative_gap(mechanism.contact_points[static_cast<std::size_t>(link)], points),
+              1e-14);
+    EXPECT_DOUBLE_EQ(mechanism.contact_radius[link], points.colwise().norm().maxCoeff());
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+      EXPECT_EQ(mechanism.sizes(static_cast<Eigen::Index>(k), link), sizes[k]);
+    }
+    // The others are as they were.
+    const int other = (link + 1) % model.link_count();
+    EXPECT_EQ(mechanism.mass[other], model.link(other).body.mass);
+  }
+}
+
+TEST(ApplyParameters, ReadsMassAndPointsAsThoseAtNominalSizes) {
+  const Model model = resizable();
+  const ParameterSet set = ParameterSet::named(
+      model, {"body.b1.mass", "body.b1.inertia", "body.b1.contact.0", "body.b1.radius"});
+  VectorXd p = set.nominal();
+  p[set.find("body.b1.mass")] = 10.0;
+  p[set.find("body.b1.inertia.x")] *= 1.5;
+  p[set.find("body.b1.contact.0.x")] += 0.1;
+  p[set.find("body.b1.radius")] = 1.0;  // twice as large
+  auto mechanism = nominal_mechanism<double>(model);
+  apply_parameters<double>(model, set, p, mechanism);
+  EXPECT_DOUBLE_EQ(mechanism.mass[1], 80.0);
+  EXPECT_DOUBLE_EQ(mechanism.moments(0, 1), 32.0 * p[set.find("body.b1.inertia.x")]);
+  // The first pole moves along with the surface from where it was put.
+  EXPECT_LT(relative_gap(mechanism.contact_points[1].col(0), Eigen::Vector3d(0.1, 0.0, 1.0)),
+            1e-15);
+}
+
+TEST(ApplyParameters, RefusesContactNumbersThatCannotBe) {
+  const Model model = resizable();
+  const auto message = [&model](const std::string& name, double value) {
+    auto mechanism = nominal_mechanism<double>(model);
+    return message_of<InvalidInput>([&] {
+      apply_parameters<double>(model, ParameterSet::named(model, {name}),
+                               VectorXd::Constant(1, value), mechanism);
+    });
+  };
+  for (const char* name : {"kn", "kt", "mu", "damping"}) {
+    const std::string full = concat("contact.b0-ground.", name);
+    EXPECT_EQ(message(full, -0.5), full + " is -0.5; it must be ≥ 0");
+    EXPECT_EQ(message(full, std::nan("")), full + " is nan; it must be finite");
+    EXPECT_EQ(message(full, 0.0), "");
+  }
+  EXPECT_EQ(message("body.b2.contact_scale", -1.0), "body.b2.contact_scale is -1; it must be ≥ 0");
+  EXPECT_EQ(message("body.b2.contact_scale", 0.0), "");
+  EXPECT_EQ(message("body.b1.radius", 0.0), "body.b1.radius is 0; it must be positive");
+  EXPECT_EQ(message("body.b0.size.y", -2.0), "body.b0.size.y is -2; it must be positive");
+  EXPECT_NE(message("body.b3.length", std::nan("")), "");
+  EXPECT_NE(message("body.b3.length", std::numeric_limits<double>::infinity()), "");
+  EXPECT_EQ(message("body.b0.contact.1.x", std::nan("")),
+            "body.b0.contact.1.x is nan; it must be finite");
 }
 
 TEST(ApplyParameters, RefusesVectorsAndBodiesThatCannotBe) {
