@@ -137,7 +137,7 @@ void check_tactile_sensor(const TactileSensor& sensor) {
   for (const Eigen::Matrix3Xd* axes : {&sensor.axis0, &sensor.axis1}) {
     require(axes->cols() == count,
             concat(where, ": ", axes->cols(), " axes for ", count, " points"));
-    require((axes->colwise().norm().array() - 1.0).abs().maxCoeff() < 1e-9,
+    require(axes->allFinite() && (axes->colwise().norm().array() - 1.0).abs().maxCoeff() < 1e-9,
             where + ": axes must have length 1");
   }
   check_coefficients(sensor.coefficients, where);

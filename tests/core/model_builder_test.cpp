@@ -137,6 +137,8 @@ TEST(ModelBuilder, RefusesBodiesThatCannotBe) {
             b.inertia = {1.0, kNan, 1.0};
           },
           "principal moments are (  1 nan   1); they must be positive"),
+      bad_body([](Body& b) { b.contact_points = Eigen::Matrix3Xd::Constant(3, 1, kNan); },
+               "its contact points must be finite"),
       bad_body(
           [](Body& b) {
             b.inertia = {1.0, 1.0, 2.5};
@@ -194,6 +196,144 @@ TEST(ModelBuilder, RefusesMotorsThatCannotDrive) {
   builder.add_motor({.link = 0});
   EXPECT_EQ(message_of<InvalidInput>([&] { builder.add_motor({.link = 0}); }),
             where + "this joint has a motor already");
+}
+
+/// A body without contact points, or with one at its centre.
+Body shaped(const std::string& name, const Shape& shape, bool point) {
+  Body body = brick(name);
+  body.shape = shape;
+  body.contact_points = Eigen::Matrix3Xd::Zero(3, point ? 1 : 0);
+  return body;
+}
+
+/// Bodies: 0 "box" with a point, 1 "smooth" box without, 2 "ball" without, 3 "lump" of no shape
+/// with a point.
+ModelBuilder four_bodies() {
+  ModelBuilder builder("four");
+  builder.add_link(-1, hinge("j0"), shaped("box", Cuboid{}, true));
+  builder.add_link(-1, hinge("j1"), shaped("smooth", Cuboid{}, false));
+  builder.add_link(-1, hinge("j2"), shaped("ball", Sphere{}, false));
+  builder.add_link(-1, hinge("j3"), shaped("lump", NoShape{}, true));
+  return builder;
+}
+
+std::shared_ptr<const DistanceField> some_field() {
+  return std::make_shared<const testing::QuadricField>(Eigen::Matrix3d::Identity(), 1.0);
+}
+
+TEST(ModelBuilder, AcceptsContactsThatCanBeAndNamesThem) {
+  ModelBuilder builder = four_bodies();
+  EXPECT_EQ(builder.add_contact({.link = 0, .surface = Plane{}}), 0);
+  EXPECT_EQ(builder.add_contact({.link = 2, .surface = Plane{}}), 1);
+  builder.add_contact({.link = 0, .other = 1});
+  builder.add_contact({.link = 0, .other = 1, .surface = Plane{}});
+  builder.add_contact({.name = "mine", .link = 0, .other = 2});
+  builder.add_contact({.link = 0, .other = 3, .surface = some_field()});
+  builder.add_contact(
+      {.link = 0, .other = 1, .friction_law = FrictionLaw::kSmooth, .friction_width = 0.1});
+  const Model model = builder.build();
+  std::vector<std::string> names;
+  for (const Contact& contact : model.contacts()) {
+    names.push_back(contact.name);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"box-ground", "ball-ground", "box-smooth",
+                                             "box-smooth-2", "mine", "box-lump", "box-smooth-3"}));
+  EXPECT_EQ(model.contact_count(), 7);
+}
+
+TEST(ModelBuilder, RefusesContactsThatCannotBe) {
+  const Contact good = {.name = "c", .link = 0, .other = 1};
+  const auto changed = [&good](const std::function<void(Contact&)>& change) {
+    Contact contact = good;
+    change(contact);
+    ModelBuilder builder = four_bodies();
+    const std::string message = message_of<InvalidInput>([&] { builder.add_contact(contact); });
+    EXPECT_EQ(builder.build().contact_count(), message.empty() ? 1 : 0);
+    return message;
+  };
+  EXPECT_EQ(changed([](Contact&) {}), "");
+  EXPECT_EQ(changed([](Contact& c) { c.link = 4; }),
+            "contact, points: link 4 does not exist; the model has 4 links");
+  EXPECT_EQ(changed([](Contact& c) { c.other = -2; }),
+            "contact, other body: link -2 does not exist; the model has 4 links");
+  EXPECT_EQ(changed([](Contact& c) { c.other = 0; }), "contact 'c': a body cannot touch itself");
+  EXPECT_EQ(changed([](Contact& c) { c.other = -1; }),
+            "contact 'c': the world touches as a plane only");
+  EXPECT_EQ(changed([](Contact& c) {
+              c.other = -1;
+              c.surface = some_field();
+            }),
+            "contact 'c': the world touches as a plane only");
+  EXPECT_EQ(changed([](Contact& c) { c.surface = std::shared_ptr<const DistanceField>(); }),
+            "contact 'c': the distance field is null");
+  EXPECT_EQ(changed([](Contact& c) { c.other = 3; }),
+            "contact 'c': body 'lump' has no shape of its own; give a plane or a distance field");
+  for (const Eigen::Vector3d& normal :
+       {Eigen::Vector3d(0.0, 0.0, 2.0), Eigen::Vector3d(kNan, 0, 0)}) {
+    EXPECT_EQ(changed([&](Contact& c) {
+                c.surface = Plane{Eigen::Vector3d::Zero(), normal};
+              }),
+              "contact 'c': a plane needs a finite point and a normal of length 1");
+  }
+  EXPECT_EQ(changed([](Contact& c) { c.surface = Plane{Eigen::Vector3d(0.0, kInfinity, 0.0)}; }),
+            "contact 'c': a plane needs a finite point and a normal of length 1");
+  EXPECT_EQ(changed([](Contact& c) {
+              c.link = 1;
+              c.other = 0;
+            }).substr(0, 51),
+            "contact 'c': body 'smooth' has no contact points (s");
+  EXPECT_NE(changed([](Contact& c) {
+              c.link = 2;
+              c.surface = some_field();
+            }),
+            "");
+  EXPECT_EQ(changed([](Contact& c) { c.coefficients.kn = -1.0; }),
+            "contact 'c': kn is -1; it must be ≥ 0 and finite");
+  EXPECT_EQ(changed([](Contact& c) { c.coefficients.kt = kInfinity; }),
+            "contact 'c': kt is inf; it must be ≥ 0 and finite");
+  EXPECT_EQ(changed([](Contact& c) { c.coefficients.damping = kNan; }),
+            "contact 'c': damping is nan; it must be ≥ 0 and finite");
+  EXPECT_EQ(changed([](Contact& c) { c.friction_law = FrictionLaw::kSmooth; }),
+            "contact 'c': friction width is 0; the smooth law needs it > 0");
+  ModelBuilder builder = four_bodies();
+  builder.add_contact(good);
+  EXPECT_EQ(message_of<InvalidInput>([&] { builder.add_contact(good); }),
+            "contact 'c': this name is taken");
+}
+
+TEST(ModelBuilder, AcceptsTactileSensorsThatCanBeAndRefusesOthers) {
+  TactileSensor good;
+  good.link = 1;
+  good.points = Eigen::Matrix3Xd::Zero(3, 2);
+  good.axis0 = Eigen::Vector3d::UnitX().replicate(1, 2);
+  good.axis1 = Eigen::Vector3d::UnitY().replicate(1, 2);
+  const auto changed = [&good](const std::function<void(TactileSensor&)>& change) {
+    TactileSensor sensor = good;
+    sensor.name = "t";
+    change(sensor);
+    ModelBuilder builder = four_bodies();
+    return message_of<InvalidInput>([&] { builder.add_tactile_sensor(sensor); });
+  };
+  const std::string where = "tactile sensor 't': ";
+  EXPECT_EQ(changed([](TactileSensor&) {}), "");
+  EXPECT_EQ(changed([](TactileSensor& t) { t.link = -1; }),
+            "tactile sensor: link -1 does not exist; the model has 4 links");
+  EXPECT_EQ(changed([](TactileSensor& t) { t.points.resize(3, 0); }),
+            where + "it needs points, all finite");
+  EXPECT_EQ(changed([](TactileSensor& t) { t.points(1, 1) = kNan; }),
+            where + "it needs points, all finite");
+  EXPECT_EQ(changed([](TactileSensor& t) { t.axis1 = t.axis1.leftCols(1).eval(); }),
+            where + "1 axes for 2 points");
+  EXPECT_EQ(changed([](TactileSensor& t) { t.axis0 *= 2.0; }), where + "axes must have length 1");
+  EXPECT_EQ(changed([](TactileSensor& t) { t.axis1(0, 1) = kNan; }),
+            where + "axes must have length 1");
+  EXPECT_EQ(changed([](TactileSensor& t) { t.coefficients.mu = -1.0; }),
+            where + "mu is -1; it must be ≥ 0 and finite");
+  ModelBuilder builder = four_bodies();
+  EXPECT_EQ(builder.add_tactile_sensor(good), 0);
+  EXPECT_EQ(builder.add_tactile_sensor(good), 1);
+  EXPECT_EQ(builder.build().tactile_sensors()[1].name, "tactile1");
+  EXPECT_EQ(builder.build().tactile_count(), 12);
 }
 
 TEST(ModelBuilder, RefusesAModelWithoutLinks) {
