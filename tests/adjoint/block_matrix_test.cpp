@@ -2,33 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
-#include "tests/adjoint/small_problems.h"
+#include <utility>
+#include <vector>
 
 namespace hbar {
 namespace {
-
-TEST(TreePattern, CouplesWhatIsOnOnePathAndNothingElse) {
-  const Model model = testing::small_model();
-  const Tree& tree = model.tree();
-  const auto pattern = tree_pattern(tree);
-  for (int c = 0; c < tree.dof(); ++c) {
-    std::vector<int> expected;
-    for (int l = 0; l < tree.dof(); ++l) {
-      const int a = tree.node_of(l);
-      const int b = tree.node_of(c);
-      if (tree.is_on_path(a, b) || tree.is_on_path(b, a)) {
-        expected.push_back(l);
-      }
-    }
-    EXPECT_EQ(pattern[static_cast<std::size_t>(c)], expected) << c;
-  }
-  const int arm = model.coordinates_of_link(model.find_link("arm")).begin;
-  const int weight = model.coordinates_of_link(model.find_link("weight")).begin;
-  const auto& of_arm = pattern[static_cast<std::size_t>(arm)];
-  EXPECT_EQ(std::count(of_arm.begin(), of_arm.end(), weight), 0);
-}
 
 TEST(BlockMatrix, HoldsItsBlocksWherePatternAndPlaceSay) {
   const std::vector<std::vector<int>> pattern = {{0, 1}, {1}};
