@@ -105,7 +105,7 @@ TEST_P(EveryModelsParameters, HaveARemainderOfSecondOrder) {
   }
   const auto along = [&](double e) { return z.dot(residual_at(p + e * d)); };
   // Small enough that no contact starts, ends or slips on the way.
-  EXPECT_NEAR(testing::taylor_slope(along, z.dot(columns() * d), 2e-3), 2.0, 0.05);
+  EXPECT_NEAR(testing::taylor_slope(along, z.dot(columns() * d), 1e-2), 2.0, 0.05);
 }
 
 TEST_P(EveryModelsParameters, HaveAGradientThatIsTheTransposeOfTheirColumns) {
@@ -124,7 +124,7 @@ TEST_P(EveryModelsParameters, HaveAGradientThatIsTheTransposeOfTheirColumns) {
 
 TEST_P(EveryModelsParameters, TouchExactlyTheRowsTheyOwn) {
   std::vector<std::set<int>> touched(set.blocks().size());
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 8; ++k) {
     linearize();
     const MatrixXd exact = by_duals();
     for (std::size_t b = 0; b < touched.size(); ++b) {

@@ -113,11 +113,30 @@ inline void add_random_contacts(ModelBuilder& builder, int links, Random& random
   }
 }
 
+/// Tactile sensors of five points each on four bodies.
+inline void add_random_sensors(ModelBuilder& builder, Random& random) {
+  for (const int link : {13, 2, 5, 8}) {
+    TactileSensor sensor;
+    sensor.link = link;
+    sensor.points = random.matrix(3, 5);
+    sensor.axis0.resize(3, 5);
+    sensor.axis1.resize(3, 5);
+    for (int i = 0; i < 5; ++i) {
+      const Eigen::Vector3d axis0 = random.direction();
+      sensor.axis0.col(i) = axis0;
+      sensor.axis1.col(i) = random.direction().cross(axis0).normalized();
+    }
+    sensor.coefficients = {random.between(1.0, 5.0), random.between(0.1, 1.0),
+                           random.between(0.05, 1.0), random.between(0.1, 1.0)};
+    builder.add_tactile_sensor(sensor);
+  }
+}
+
 /// Two branching trees of every kind of joint and a second exponential, revolute and fixed one, in
 /// an order that the seed shuffles; springs, dampers and limits; a motor of every kind; four end
 /// effectors; a mask of its own on each link. Subtrees are not contiguous in coordinates.
 ///
-/// @param contacts  whether bodies have shapes and contact points, and touch each other
+/// @param contacts  whether bodies have shapes and contact points, touch each other and feel it
 [[nodiscard]] inline Model random_model(unsigned seed, bool contacts = false) {
   constexpr std::array<int, 14> kParents = {-1, 0, 1, 1, 3, 2, 0, 6, -1, 8, 7, 4, 9, 5};
   Random random(seed);
@@ -170,6 +189,7 @@ inline void add_random_contacts(ModelBuilder& builder, int links, Random& random
   }
   if (contacts) {
     add_random_contacts(builder, static_cast<int>(kinds.size()), random);
+    add_random_sensors(builder, random);
   }
   return builder.build();
 }

@@ -4,6 +4,7 @@
 
 #include "hbar/core/end_effectors.h"
 #include "hbar/core/parameter_derivatives.h"
+#include "hbar/core/tactile.h"
 #include "tests/core/random_model.h"
 #include "tests/support/count_allocations.h"
 #include "tests/support/numerics.h"
@@ -151,6 +152,17 @@ TEST_P(EveryModelsResidual, AllocatesNothingAfterSetUp) {
   EXPECT_EQ(testing::allocations_of([&] { stage.pull_back(z); }), 0U);
   EXPECT_EQ(testing::allocations_of([&] {
               add_parameter_gradient<double>(mechanism, set, p, stage, point, z, 1.0, grad);
+            }),
+            0U);
+  ContactForces<double> contacts(model);
+  EXPECT_EQ(testing::allocations_of([&] { contacts.evaluate(mechanism, stage.motion()); }), 0U);
+  EXPECT_EQ(testing::allocations_of([&] { contacts.linearize(mechanism, stage.motion()); }), 0U);
+  TactileReadings<double> tactile(model);
+  VectorXd readings = VectorXd::Zero(model.tactile_count());
+  EXPECT_EQ(testing::allocations_of([&] { tactile.readings(mechanism, stage.motion(), readings); }),
+            0U);
+  EXPECT_EQ(testing::allocations_of([&] {
+              tactile.pull_back(mechanism, set, p, stage.motion(), readings, by_q, by_q, grad);
             }),
             0U);
   EXPECT_EQ(testing::allocations_of([&] { effectors.positions(stage.motion(), v); }), 0U);

@@ -156,34 +156,6 @@ TEST(TactileReadings, ReactWhereTheContactDoes) {
   }
 }
 
-/// random_contact_model with sensors on four links.
-Model random_tactile_model(unsigned seed) {
-  const Model bare = testing::random_contact_model(seed);
-  Random random(seed + 100);
-  ModelBuilder builder(bare.name());
-  for (const Link& link : bare.links()) {
-    builder.add_link(link.parent, link.joint, link.body, link.name, link.design_mask);
-  }
-  for (const Contact& contact : bare.contacts()) {
-    builder.add_contact(contact);
-  }
-  for (const int link : {13, 2, 5, 8}) {
-    TactileSensor sensor;
-    sensor.link = link;
-    sensor.points = random.matrix(3, 5);
-    sensor.axis0.resize(3, 5);
-    sensor.axis1.resize(3, 5);
-    for (int i = 0; i < 5; ++i) {
-      sensor.axis0.col(i) = random.direction();
-      sensor.axis1.col(i) = random.direction().cross(Vector3d(sensor.axis0.col(i))).normalized();
-    }
-    sensor.coefficients = {random.between(1.0, 5.0), random.between(0.1, 1.0),
-                           random.between(0.05, 1.0), random.between(0.1, 1.0)};
-    builder.add_tactile_sensor(sensor);
-  }
-  return builder.build();
-}
-
 class EveryModelsReadings : public ::testing::TestWithParam<unsigned> {
  protected:
   /// Moves to a random state and gives the gradients that weights y have there.
@@ -217,7 +189,7 @@ class EveryModelsReadings : public ::testing::TestWithParam<unsigned> {
         p);
   }
 
-  const Model model = random_tactile_model(GetParam());
+  const Model model = testing::random_contact_model(GetParam());
   const ParameterSet set = ParameterSet::all(model);
   Random random{GetParam()};
   testing::State state = testing::random_state(model, random);
