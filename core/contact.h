@@ -52,8 +52,8 @@ struct Plane {
 using ContactSurface = std::variant<OwnShape, Plane, std::shared_ptr<const DistanceField>>;
 
 /// A declared contact: the points of one body against the signed distance of another, or of the
-/// world. A ball against a plane touches with its deepest point; every other body with the points
-/// of Body::contact_points.
+/// world. A ball touches a plane with its deepest point, and so it does a body's own shape where it
+/// has no contact points; everything else touches with Body::contact_points.
 struct Contact {
   std::string name = {};  ///< empty: "POINTS_BODY-OTHER_BODY"
   int link = 0;           ///< A: whose points

@@ -103,8 +103,7 @@ void ContactForces<S>::run_pair(const Mechanism<S>& mechanism, int index) {
                                    mechanism.sizes.col(other));
   const RigidTransform<S> X_BA = inverse(pair.motion.b.X_WB) * pair.motion.a.X_WB;
   const Eigen::Vector3d centre = values<S>(X_BA.p);
-  const bool rolls =
-      surface.is_plane() && std::holds_alternative<Sphere>(model_.link(contact.link).body.shape);
+  const bool rolls = touches_as_ball(model_, contact);
   const double reach =
       rolls ? value_of(mechanism.sizes(0, contact.link)) : mechanism.contact_radius[contact.link];
   if (surface.lower_bound(centre) > reach) {
@@ -125,7 +124,9 @@ void ContactForces<S>::run_pair(const Mechanism<S>& mechanism, int index) {
     touch(contact, touching, summary, pair.wrenches);
   };
   if (rolls) {
-    add(-1, Vector3<S>::Zero(), mechanism.sizes(0, contact.link));
+    if (surface.touches(value_of(surface.sample(X_BA.p).d) - reach)) {
+      add(-1, Vector3<S>::Zero(), mechanism.sizes(0, contact.link));
+    }
   } else {
     const auto& points = mechanism.contact_points[a];
     for (int i = 0; i < static_cast<int>(points.cols()); ++i) {

@@ -47,10 +47,11 @@ void compute_touch(const Contact& contact, const LawNumbers<S>& numbers,
   at.index = index;
   at.lever = motion.a.X_WB.R * x_A + motion.a.X_WB.p;
   const Matrix3<S>& R = motion.b.X_WB.R;
-  at.x_B = R.transpose() * (at.lever - motion.b.X_WB.p);
-  SurfaceSample<S> sample = surface.sample(at.x_B);
+  at.lever_B = R.transpose() * (at.lever - motion.b.X_WB.p);
+  SurfaceSample<S> sample = surface.sample(at.lever_B);
   at.n = R * sample.n;
   at.x = at.lever;
+  at.x_B = at.lever_B;
   if (index < 0) {
     at.x -= radius * at.n;
     at.x_B -= radius * sample.n;
@@ -67,6 +68,10 @@ void compute_touch(const Contact& contact, const LawNumbers<S>& numbers,
   }
   at.gradient = R * sample.gradient;
   at.dn_dx = R * sample.dn_dx * R.transpose();
+  at.dx_dlever.setIdentity();
+  if (index < 0) {
+    at.dx_dlever -= radius * at.dn_dx;
+  }
   at.force = contact_force<S>(law_of(contact), numbers, at.d, at.n, u, at.law);
 }
 
@@ -75,13 +80,13 @@ PointSlopes<S> point_slopes(Reaction reaction, const PairMotion<S>& motion,
                             const TouchingPoint<S>& point) {
   PointSlopes<S> out;
   out.force = point.law.by_d * point.gradient.transpose() + point.law.by_n * point.dn_dx;
-  Matrix3<S> velocity = skew<S>(motion.relative_rotation());
+  Matrix3<S> velocity = skew<S>(motion.relative_rotation()) * point.dx_dlever;
   if (reaction == Reaction::kSurface) {
     const Matrix3<S> offset = point.n * point.gradient.transpose() + point.d * point.dn_dx;
-    out.reaction = Matrix3<S>::Identity() - offset;
+    out.reaction = point.dx_dlever - offset;
     velocity += skew<S>(motion.b.V.template head<3>()) * offset;
   } else {
-    out.reaction.setIdentity();
+    out.reaction = point.dx_dlever;
   }
   out.force.noalias() += point.law.by_u * velocity;
   return out;
@@ -100,10 +105,11 @@ void add_stiffness(Reaction reaction, const PairMotion<S>& motion, const Touchin
   const Vector3<S>& x = point.x;
   const Vector3<S>& c = point.lever;
   const Matrix3<S> F = skew<S>(point.force.f);
+  const Matrix3<S> own_arm = F * point.dx_dlever;
   add_sandwich<S>(x, at.force, c, out.K_a);
   // The lever arm changes, too: δx × f.
-  out.K_a.template topLeftCorner<3, 3>().noalias() += F * skew<S>(c);
-  out.K_a.template topRightCorner<3, 3>() -= F;
+  out.K_a.template topLeftCorner<3, 3>().noalias() += own_arm * skew<S>(c);
+  out.K_a.template topRightCorner<3, 3>() -= own_arm;
   add_sandwich<S>(x, point.law.by_u, x, out.C_a);
   if (reaction == Reaction::kPoint) {
     return;
@@ -138,8 +144,9 @@ PairWrenches<S> wrench_change(Reaction reaction, const PairMotion<S>& motion,
                               const TouchingPoint<S>& point, const PointChange<S>& change) {
   const S d = point.gradient.dot(change.x) + change.d;
   const Vector3<S> n = point.dn_dx * change.x + change.n;
-  Vector3<S> u = motion.relative_rotation().cross(change.x);
-  Vector3<S> x_s = change.x;
+  const Vector3<S> x = point.dx_dlever * change.x + change.place;
+  Vector3<S> u = motion.relative_rotation().cross(x);
+  Vector3<S> x_s = x;
   if (reaction == Reaction::kSurface) {
     const Vector3<S> offset = d * point.n + point.d * n;
     u += Vector3<S>(motion.b.V.template head<3>()).cross(offset);
@@ -148,7 +155,7 @@ PairWrenches<S> wrench_change(Reaction reaction, const PairMotion<S>& motion,
   const Vector3<S> f = d * point.law.by_d + point.law.by_n * n + point.law.by_u * u + change.f;
   const Vector3<S>& f0 = point.force.f;
   const Vector3<S> arm = reaction_point(reaction, point);
-  return {spatial<S>(change.x.cross(f0) + point.x.cross(f), f),
+  return {spatial<S>(x.cross(f0) + point.x.cross(f), f),
           spatial<S>(-x_s.cross(f0) - arm.cross(f), -f)};
 }
 

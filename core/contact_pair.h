@@ -40,23 +40,26 @@ struct PairWrenches {
 /// A contact point that touches, with the law's derivatives there.
 template <Scalar S>
 struct TouchingPoint {
-  int index = 0;        ///< among the body's contact points; −1: a ball's deepest point
-  Vector3<S> x;         ///< where the force acts on A, world                [3]
-  Vector3<S> lever;     ///< point of A that x moves with: x, or a ball's centre [3]
-  Vector3<S> x_B;       ///< x in B's frame                                  [3]
-  S d;                  ///< signed distance
-  Vector3<S> gradient;  ///< ∂d/∂x                                           [3]
-  Vector3<S> n;         ///< normal                                          [3]
-  Matrix3<S> dn_dx;     ///< ∂n/∂x                                           [3 x 3]
+  int index = 0;         ///< among the body's contact points; −1: a ball's deepest point
+  Vector3<S> x;          ///< where the force acts on A, world                [3]
+  Vector3<S> lever;      ///< point of A that x moves with: x, or a ball's centre [3]
+  Vector3<S> lever_B;    ///< the lever in B's frame: where the distance is taken [3]
+  Vector3<S> x_B;        ///< x in B's frame                                  [3]
+  S d;                   ///< signed distance
+  Vector3<S> gradient;   ///< ∂d/∂x                                           [3]
+  Vector3<S> n;          ///< normal                                          [3]
+  Matrix3<S> dn_dx;      ///< ∂n/∂x                                           [3 x 3]
+  Matrix3<S> dx_dlever;  ///< 1, or 1 − radius ∂n/∂x of a ball                [3 x 3]
   PointForce<S> force;
   PointForceDerivatives<S> law;
 };
 
-/// A change of one point: of its place on A, of the distance and normal at a fixed place, and of
-/// the force at fixed others.
+/// A change of one point: of its place on A (a ball's centre), of where the force acts, the
+/// distance and the normal at a fixed place, and of the force at fixed others.
 template <Scalar S>
 struct PointChange {
   Vector3<S> x = Vector3<S>::Zero();
+  Vector3<S> place = Vector3<S>::Zero();
   S d = S(0.0);
   Vector3<S> n = Vector3<S>::Zero();
   Vector3<S> f = Vector3<S>::Zero();
@@ -87,12 +90,12 @@ void compute_touch(const Contact& contact, const LawNumbers<S>& numbers,
                    const SurfaceDistance<S>& surface, const PairMotion<S>& motion, int index,
                    const Vector3<S>& x_A, const S& radius, TouchDetail how, TouchingPoint<S>& out);
 
-/// δf by a displacement δx of the point relative to B, at a fixed relative twist in B's frame, and
+/// δf by a displacement of the lever relative to B, at a fixed relative twist in B's frame, and
 /// δx_s of the point at which B reacts.
 template <Scalar S>
 struct PointSlopes {
-  Matrix3<S> force;     ///< ∂f/∂x                                                      [3 x 3]
-  Matrix3<S> reaction;  ///< ∂x_s/∂x                                                    [3 x 3]
+  Matrix3<S> force;     ///< ∂f/∂lever                                                  [3 x 3]
+  Matrix3<S> reaction;  ///< ∂x_s/∂lever                                                [3 x 3]
 };
 template <Scalar S>
 [[nodiscard]] PointSlopes<S> point_slopes(Reaction reaction, const PairMotion<S>& motion,

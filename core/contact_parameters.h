@@ -51,7 +51,7 @@ void for_each_contact_change(const ContactForces<S>& contacts, const Mechanism<S
           continue;
         }
         if (point.index < 0) {
-          changes(index, point, {.x = -point.n});
+          changes(index, point, {.place = -point.n, .d = S(-1.0)});
         } else {
           const Eigen::Vector3d rate =
               surface_point_rate(body.shape, body.contact_points.col(point.index), k);
@@ -61,8 +61,11 @@ void for_each_contact_change(const ContactForces<S>& contacts, const Mechanism<S
       for (int k = 0; k < surface.size_count(); ++k) {
         const int index = set.index(ParameterKind::kSize, contact.other, k);
         if (index >= 0) {
-          const SizeRate<S> rate = surface.by_size(point.x_B, k);
-          changes(index, point, {.d = rate.d, .n = pair.motion.b.X_WB.R * rate.n});
+          const SizeRate<S> rate = surface.by_size(point.lever_B, k);
+          const Vector3<S> n = pair.motion.b.X_WB.R * rate.n;
+          // A ball touches where its normal points.
+          const S radius = point.index < 0 ? mechanism.sizes(0, contact.link) : S(0.0);
+          changes(index, point, {.place = -radius * n, .d = rate.d, .n = n});
         }
       }
     }

@@ -62,6 +62,14 @@ int Model::find_body(std::string_view body) const {
   return find_by_name(links_, body, "body", [](const Link& l) { return l.body.name; });
 }
 
+bool touches_as_ball(const Model& model, const Contact& contact) {
+  const Body& body = model.link(contact.link).body;
+  const bool from_points =
+      !std::holds_alternative<Plane>(contact.surface) &&
+      (body.contact_points.cols() > 0 || !std::holds_alternative<OwnShape>(contact.surface));
+  return std::holds_alternative<Sphere>(body.shape) && !from_points;
+}
+
 std::string_view length_unit(Units units) { return units == Units::kCentimetreGram ? "cm" : "m"; }
 
 std::string_view mass_unit(Units units) { return units == Units::kCentimetreGram ? "g" : "kg"; }

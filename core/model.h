@@ -155,6 +155,9 @@ class Model {
   int tactile_count_ = 0;
 };
 
+/// Whether a contact is that of a ball's deepest point.
+[[nodiscard]] bool touches_as_ball(const Model& model, const Contact& contact);
+
 /// Words for units of quantities in a unit system: "m", "kg", "kg·m²", … (see parameters.h).
 [[nodiscard]] std::string_view length_unit(Units units);
 [[nodiscard]] std::string_view mass_unit(Units units);

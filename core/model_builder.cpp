@@ -117,12 +117,10 @@ void check_contact(const Model& model, const Contact& contact) {
   const Body& body = model.link(contact.link).body;
   require(contact.link != contact.other, where + ": a body cannot touch itself");
   check_surface(model, contact, where);
-  const bool rolls =
-      std::holds_alternative<Plane>(contact.surface) && std::holds_alternative<Sphere>(body.shape);
-  require(body.contact_points.cols() > 0 || rolls,
+  require(body.contact_points.cols() > 0 || touches_as_ball(model, contact),
           concat(where, ": body '", body.name,
-                 "' has no contact points (see surface_points; a ball needs none against a "
-                 "plane)"));
+                 "' has no contact points (see surface_points; a ball needs none but against a "
+                 "distance field)"));
   check_coefficients(contact.coefficients, where);
   require(contact.friction_law != FrictionLaw::kSmooth ||
               (contact.friction_width > 0.0 && std::isfinite(contact.friction_width)),

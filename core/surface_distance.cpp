@@ -38,6 +38,13 @@ SurfaceSample<S> flat_sample(const S& d, const Vector3<S>& n) {
   return {d, n, n, Matrix3<S>::Zero()};
 }
 
+template <Scalar S>
+Vector3<S> along_axis(int axis, const S& coordinate) {
+  Vector3<S> n = Vector3<S>::Zero();
+  n[axis] = S(coordinate < 0.0 ? -1.0 : 1.0);
+  return n;
+}
+
 /// The face of a cuboid that x is nearest to from inside.
 template <typename Vector>
 int nearest_face(const Vector& x, const Eigen::Vector3d& sizes) {
@@ -53,6 +60,40 @@ int nearest_face(const Vector& x, const Eigen::Vector3d& sizes) {
   return face;
 }
 
+/// Distance of a body with faces |x_i| ≤ half_i, of which `offsets` are |x_i| − half_i: to the
+/// nearest face inside and beside one, to the edge or corner beyond several.
+template <Scalar S>
+SurfaceSample<S> faceted_sample(const Vector3<S>& x, const Vector3<S>& sizes) {
+  using std::abs;
+  using std::sqrt;
+  Vector3<S> beyond = Vector3<S>::Zero();
+  int faces = 0;
+  for (int i = 0; i < 3; ++i) {
+    const S offset = abs(x[i]) - 0.5 * sizes[i];
+    if (offset > 0.0) {
+      beyond[i] = x[i] < 0.0 ? S(-offset) : offset;
+      ++faces;
+    }
+  }
+  if (faces < 2) {
+    const int face = nearest_face(
+        x, Eigen::Vector3d(sizes.unaryExpr([](const S& size) { return value_of(size); })));
+    return flat_sample<S>(abs(x[face]) - 0.5 * sizes[face], along_axis<S>(face, x[face]));
+  }
+  SurfaceSample<S> out;
+  out.d = sqrt(beyond.squaredNorm());
+  out.n = beyond / out.d;
+  out.gradient = out.n;
+  out.dn_dx = -out.n * out.n.transpose();
+  for (int i = 0; i < 3; ++i) {
+    if (beyond[i] != 0.0) {
+      out.dn_dx(i, i) += 1.0;
+    }
+  }
+  out.dn_dx /= out.d;
+  return out;
+}
+
 /// Offset from the nearest point of the segment of half-length `half` along z.
 template <Scalar S>
 Vector3<S> from_segment(const Vector3<S>& x, const S& half) {
@@ -65,6 +106,31 @@ Vector3<S> from_segment(const Vector3<S>& x, const S& half) {
     y.z() = S(0.0);
   }
   return y;
+}
+
+/// Distance to the rim where two faces at right angles meet, from beyond both.
+template <Scalar S>
+SurfaceSample<S> beyond_both(const SurfaceSample<S>& a, const SurfaceSample<S>& b) {
+  using std::sqrt;
+  SurfaceSample<S> out;
+  out.d = sqrt(a.d * a.d + b.d * b.d);
+  out.n = (a.d * a.n + b.d * b.n) / out.d;
+  out.gradient = out.n;
+  out.dn_dx = (a.n * a.n.transpose() + a.d * a.dn_dx + b.n * b.n.transpose() + b.d * b.dn_dx -
+               out.n * out.n.transpose()) /
+              out.d;
+  return out;
+}
+
+/// Direction away from the z axis; zero on it.
+template <Scalar S>
+Vector3<S> radial(const Vector3<S>& x) {
+  using std::sqrt;
+  const S squared = x[0] * x[0] + x[1] * x[1];
+  if (!(squared > 0.0)) {
+    return Vector3<S>::UnitX();
+  }
+  return Vector3<S>(x[0], x[1], S(0.0)) / sqrt(squared);
 }
 
 /// Field values with the direction that a dual number carries.
@@ -114,13 +180,6 @@ SurfaceSample<Dual> field_sample(const DistanceField& field, const Vector3<Dual>
   return out;
 }
 
-template <Scalar S>
-Vector3<S> along_axis(int axis, const S& coordinate) {
-  Vector3<S> n = Vector3<S>::Zero();
-  n[axis] = S(coordinate < 0.0 ? -1.0 : 1.0);
-  return n;
-}
-
 }  // namespace
 
 template <Scalar S>
@@ -158,7 +217,7 @@ double SurfaceDistance<S>::lower_bound(const Eigen::Vector3d& x) const {
       return x.norm() - values_[0];
     case Kind::kCylinder:
     case Kind::kTube: {
-      const double side = std::hypot(x[0], x[1]) - values_[0];
+      const double side = std::sqrt(x[0] * x[0] + x[1] * x[1]) - values_[0];
       const double end = std::abs(x[2]) - 0.5 * values_[1];
       return kind_ == Kind::kTube && end <= 0.0 ? side : std::max(side, end);
     }
@@ -178,18 +237,19 @@ SurfaceSample<S> SurfaceDistance<S>::sample(const Vector3<S>& x) const {
       const Vector3<S> n = normal_.cast<S>();
       return flat_sample<S>(n.dot(x - point_.cast<S>()), n);
     }
-    case Kind::kCuboid: {
-      const int face = nearest_face(x, values_);
-      return flat_sample<S>(abs(x[face]) - 0.5 * sizes_[face], along_axis<S>(face, x[face]));
-    }
+    case Kind::kCuboid:
+      return faceted_sample<S>(x, sizes_);
     case Kind::kSphere:
       return round_sample<S>(x, sizes_[0], 3);
     case Kind::kCylinder:
     case Kind::kTube: {
       const SurfaceSample<S> side = round_sample<S>(Vector3<S>(x[0], x[1], S(0.0)), sizes_[0], 2);
-      const S end = abs(x[2]) - 0.5 * sizes_[1];
-      return kind_ == Kind::kTube || side.d >= end ? side
-                                                   : flat_sample<S>(end, along_axis<S>(2, x[2]));
+      const SurfaceSample<S> end =
+          flat_sample<S>(abs(x[2]) - 0.5 * sizes_[1], along_axis<S>(2, x[2]));
+      if (end.d > 0.0 && side.d > 0.0) {
+        return beyond_both<S>(side, end);
+      }
+      return side.d >= end.d || (kind_ == Kind::kTube && end.d <= 0.0) ? side : end;
     }
     case Kind::kCapsule: {
       const S half = 0.5 * sizes_[1];
@@ -206,16 +266,24 @@ template <Scalar S>
 SizeRate<S> SurfaceDistance<S>::by_size(const Vector3<S>& x, int k) const {
   SizeRate<S> out = {S(0.0), Vector3<S>::Zero()};
   switch (kind_) {
-    case Kind::kCuboid:
-      out.d = S(nearest_face(x, values_) == k ? -0.5 : 0.0);
+    case Kind::kCuboid: {
+      const SurfaceSample<S> at = sample(x);
+      const Vector3<S> moved = along_axis<S>(k, x[k]) * S(-0.5);  // of the offset
+      out.d = at.n.dot(moved);
+      out.n = at.dn_dx * moved;
       break;
+    }
     case Kind::kSphere:
       out.d = S(-1.0);
       break;
     case Kind::kCylinder:
     case Kind::kTube: {
-      const bool side = sample(x).n.z() == 0.0;
-      out.d = S(side ? (k == 0 ? -1.0 : 0.0) : (k == 1 ? -0.5 : 0.0));
+      const SurfaceSample<S> at = sample(x);
+      // Along the offset that this size shortens.
+      const Vector3<S> moved =
+          k == 0 ? Vector3<S>(-radial<S>(x)) : along_axis<S>(2, x[2]) * S(-0.5);
+      out.d = at.n.dot(moved);
+      out.n = at.dn_dx * moved;
       break;
     }
     case Kind::kCapsule: {

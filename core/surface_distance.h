@@ -23,9 +23,8 @@ struct SizeRate {
 
 /// The distance side of one contact with parameters applied.
 ///
-/// Exact for planes, balls and capsules; for cuboids and cylinders inside, which is where it is
-/// used. On the edges of a distance (medial planes of a cuboid, a ball's centre) derivatives are
-/// those of one side. Cheap to copy; borrows a DistanceField.
+/// Exact, inside and outside. On the edges of a distance (medial planes of a cuboid, a ball's
+/// centre) derivatives are those of one side. Cheap to copy; borrows a DistanceField.
 template <Scalar S>
 class SurfaceDistance {
  public:

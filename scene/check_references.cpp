@@ -59,10 +59,11 @@ void check_motors(const Description& description, const Names<Joint>& joints,
   }
 }
 
-/// Whether a body has points to test, against the ground or against another body.
-bool has_contact_points(const Body& body, bool against_ground) {
+/// Whether a body can be the one whose points are tested against another; a ball without points
+/// touches with its deepest one, which a mesh's distance is not made for.
+bool has_contact_points(const Body& body, bool against_mesh) {
   if (const auto* ball = std::get_if<SphereBody>(&body.shape)) {
-    return against_ground || ball->general_contact_resolution;
+    return !against_mesh || ball->general_contact_resolution;
   }
   const auto* const abstract = std::get_if<AbstractBody>(&body.shape);
   return abstract == nullptr || abstract->contacts || abstract->collision;
@@ -80,15 +81,15 @@ BodyNames names_of_bodies(ContactKind kind) {
   return {"general_body", "primitive_body"};
 }
 
-void check_points(const Contact& contact, const Body& body, const ReadContext& context) {
-  const bool ground = contact.kind == ContactKind::kGround;
-  if (has_contact_points(body, ground)) return;
+void check_points(const Contact& contact, const Body& body, bool against_mesh,
+                  const ReadContext& context) {
+  if (has_contact_points(body, against_mesh)) return;
   const bool ball = std::holds_alternative<SphereBody>(body.shape);
   throw InvalidInput(
       attribute_place(context, contact.line.number, contact_element(contact.kind),
                       names_of_bodies(contact.kind).first, body.name) +
-      (ball ? "this ball has no contact points; give its <body> general_contact_resolution, or "
-              "make it the primitive_body"
+      (ball ? "this ball has no contact points, which a mesh needs; give its <body> "
+              "general_contact_resolution, or make it the primitive_body"
             : "this abstract body has no contact points; give its <body> contacts or a "
               "<collision>"));
 }
@@ -124,11 +125,13 @@ void check_contacts(const Description& description, const Names<Body>& bodies,
     const std::string_view element = contact_element(contact.kind);
     const auto [first, second] = names_of_bodies(contact.kind);
     const Body& a = bodies.find(contact.body_a, line, element, first, "body", context);
+    bool against_mesh = false;
     if (contact.kind != ContactKind::kGround) {
       const Body& b = bodies.find(contact.body_b, line, element, second, "body", context);
       check_pair(contact, a, b, context);
+      against_mesh = std::holds_alternative<MeshBody>(b.shape);
     }
-    check_points(contact, a, context);
+    check_points(contact, a, against_mesh, context);
     if (!contact.name) continue;
     const auto [other, is_new] = named.emplace(*contact.name, line);
     if (!is_new) {

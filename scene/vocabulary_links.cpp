@@ -162,7 +162,7 @@ constexpr std::array kBody = {
                   .range = Range::kAtLeastTwo,
                   .types = "sphere",
                   .sentence = "Contact points against other bodies: rings, and points of each; "
-                              "none if absent.",
+                              "if absent, the deepest point alone.",
                   .extension = true},
     AttributeInfo{.name = "general_contact_angle_resolution",
                   .kind = Kind::kInteger,

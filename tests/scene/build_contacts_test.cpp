@@ -128,7 +128,7 @@ TEST_F(Contacts, WithAMeshShareItsDistance) {
 TEST_F(Contacts, SayWhereTheModelRefusesThem) {
   EXPECT_EQ(refusal(scene("<contact><ground_contact body=\"p\"/></contact>")),
             "a.xml:2: <ground_contact>: contact 'p-ground': body 'p' has no contact points (see "
-            "surface_points; a ball needs none against a plane)");
+            "surface_points; a ball needs none but against a distance field)");
   EXPECT_EQ(refusal(scene("<contact><ground_contact body=\"d\"/>\n<ground_contact body=\"e\" "
                           "name=\"d-ground\"/></contact>")),
             "a.xml:3: <ground_contact name=\"d-ground\">: contact 'd-ground': this name is taken");
