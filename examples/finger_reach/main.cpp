@@ -6,33 +6,21 @@
 //
 // prints a line per iteration of Ipopt and a summary, and writes result.json, trajectory.csv and
 // iterations.csv into results/finger_reach. doc/finger_reach.md tells what is solved and found.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <cstdio>
 #include <filesystem>
-#include <system_error>
 
-#include "hbar/core/error.h"
+#include "examples/common/process.h"
+#include "examples/common/progress.h"
 #include "hbar/scene/atomic_file.h"
 #include "report.h"
 
 namespace hbar::finger_reach {
 namespace {
 
-enum class ExitCode {
-  kOk = 0,
-  kUsage = 2,
-  kBadScene = 3,
-  kSimulationFailed = 4,
-  kNotConverged = 5,
-  kInputOutput = 6,
-  kInterrupted = 130
-};
+using example::ExitCode;
+using example::print;
 
 struct Arguments {
   std::filesystem::path out = "results/finger_reach";
@@ -41,72 +29,9 @@ struct Arguments {
   int steps = 600;
 };
 
-std::atomic<bool> stop = false;
-
-extern "C" void handle_interrupt(int) {
-  if (stop.exchange(true)) {
-    ::_exit(static_cast<int>(ExitCode::kInterrupted));
-  }
-}
-
-/// Standard streams that are closed cannot be taken for files; the first SIGINT sets `stop`.
-void prepare_process() {
-  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (::fcntl(descriptor, F_GETFD) < 0) {
-      static_cast<void>(::open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY));
-    }
-  }
-  ::signal(SIGPIPE, SIG_IGN);
-  struct sigaction action = {};
-  action.sa_handler = handle_interrupt;
-  action.sa_flags = SA_RESTART;
-  ::sigaction(SIGINT, &action, nullptr);
-}
-
-void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw IoError("standard output: cannot be written");
-  }
-}
-
-/// A line per iterate; on a terminal one line that is overwritten, and kept every tenth time.
-class Progress {
- public:
-  void show(const solvers::IterationInfo& info) {
-    iterations_.push_back(info);
-    const std::string line = progress_line(info);
-    if (!terminal_) {
-      print(line + '\n');
-    } else {
-      print("\r\033[K" + line + (info.iteration % 10 == 0 ? "\n" : ""));
-    }
-  }
-  void end() const {
-    if (terminal_) {
-      print("\n");
-    }
-  }
-  [[nodiscard]] const std::vector<solvers::IterationInfo>& iterations() const {
-    return iterations_;
-  }
-
- private:
-  bool terminal_ = ::isatty(STDOUT_FILENO) == 1;
-  std::vector<solvers::IterationInfo> iterations_;
-};
-
-/// Makes the folder at once, so that a wrong name is known before the work.
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code code;
-  std::filesystem::create_directories(folder, code);
-  if (code) {
-    throw IoError(concat(folder.string(), ": the folder cannot be made: ", code.message()));
-  }
-}
-
 ExitCode run(const Arguments& arguments) {
   // 1. The problem.
-  make_folder(arguments.out);
+  example::make_folder(arguments.out);
   Reach reach = make_reach(arguments.scene, arguments.steps);
   DesignProblem& problem = *reach.problem;
   Outcome outcome;
@@ -114,12 +39,12 @@ ExitCode run(const Arguments& arguments) {
   outcome.start_objective = problem.objective(outcome.start);
   print(fmt::format("finger_reach: {} variables, {} constraints, {} steps of {:g} s\n{}\n",
                     outcome.start.size(), problem.constraint_limits().lower.size(), arguments.steps,
-                    kDuration / arguments.steps, progress_heading()));
+                    kDuration / arguments.steps, example::progress_heading()));
 
   // 2. Ipopt.
-  Progress progress;
+  example::Progress progress;
   solvers::IpoptOptions options = ipopt_options(arguments.max_iterations);
-  options.stop = &stop;
+  options.stop = &example::stop_flag();
   options.on_iteration = [&](const solvers::IterationInfo& info) {
     progress.show(info);
     return true;
@@ -132,10 +57,11 @@ ExitCode run(const Arguments& arguments) {
   outcome.times = problem.times();
   outcome.values = problem.trajectory_values(outcome.result.x);
   scene::write_file_atomically(arguments.out / "result.json", result_json(reach, outcome));
-  scene::write_file_atomically(arguments.out / "trajectory.csv",
-                               trajectory_csv(reach, outcome.values));
+  scene::write_file_atomically(
+      arguments.out / "trajectory.csv",
+      example::trajectory_csv(problem.parts().simulator.model(), outcome.values));
   scene::write_file_atomically(arguments.out / "iterations.csv",
-                               iterations_csv(outcome.iterations));
+                               example::iterations_csv(outcome.iterations));
   print(summary(reach, outcome));
   print(fmt::format("written:     {}/result.json, trajectory.csv, iterations.csv\n",
                     arguments.out.string()));
@@ -168,29 +94,11 @@ ExitCode run_line(int argc, char** argv) {
   return run(arguments);
 }
 
-/// What is thrown, as an exit code and a line on standard error.
-ExitCode guarded(int argc, char** argv) {
-  const auto say = [](const std::exception& error) {
-    fmt::print(stderr, "finger_reach: {}\n", error.what());
-  };
-  try {
-    return run_line(argc, argv);
-  } catch (const IoError& error) {
-    say(error);
-    return ExitCode::kInputOutput;
-  } catch (const InvalidInput& error) {
-    say(error);
-    return ExitCode::kBadScene;
-  } catch (const std::exception& error) {
-    say(error);
-    return stop ? ExitCode::kInterrupted : ExitCode::kSimulationFailed;
-  }
-}
-
 }  // namespace
 }  // namespace hbar::finger_reach
 
 int main(int argc, char** argv) {
-  hbar::finger_reach::prepare_process();
-  return static_cast<int>(hbar::finger_reach::guarded(argc, argv));
+  hbar::example::prepare_process();
+  return hbar::example::guarded("finger_reach",
+                                [&] { return hbar::finger_reach::run_line(argc, argv); });
 }

@@ -30,16 +30,4 @@ struct Outcome {
 /// Everything but the trajectory, numbers at full precision.
 [[nodiscard]] std::string result_json(const Reach& reach, const Outcome& outcome);
 
-/// A row per step: time, coordinates, rates, tip, and the controls that acted until then.
-[[nodiscard]] std::string trajectory_csv(const Reach& reach, const TrajectoryValues& values);
-
-/// A row per iterate.
-[[nodiscard]] std::string iterations_csv(const std::vector<solvers::IterationInfo>& iterations);
-
-/// One iterate on one line of at most 80 characters, without a line's end.
-[[nodiscard]] std::string progress_line(const solvers::IterationInfo& info);
-
-/// The heading of progress_line's columns.
-[[nodiscard]] std::string progress_heading();
-
 }  // namespace hbar::finger_reach

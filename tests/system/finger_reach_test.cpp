@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "examples/common/progress.h"
 #include "examples/finger_reach/reach.h"
 #include "examples/finger_reach/report.h"
 #include "hbar/core/error.h"
@@ -77,9 +78,9 @@ TEST(FingerReach, ReachesItsTargetsWithTheLeastEffort) {
   const std::string json = result_json(reach, outcome);
   EXPECT_NE(json.find("\"converged\": true"), std::string::npos);
   EXPECT_NE(summary(reach, outcome).find("target 4"), std::string::npos);
-  const std::string csv = trajectory_csv(reach, outcome.values);
+  const std::string csv = example::trajectory_csv(model, outcome.values);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), kSteps + 2);
-  const std::string rows = iterations_csv(outcome.iterations);
+  const std::string rows = example::iterations_csv(outcome.iterations);
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), outcome.result.iterations + 2);
 }
 

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hbar/adjoint/simulator.h"
+#include "hbar/solvers/ipopt.h"
+
+namespace hbar::example {
+
+/// One iterate on one line of at most 80 characters, without a line's end.
+[[nodiscard]] std::string progress_line(const solvers::IterationInfo& info);
+
+/// The heading of progress_line's columns.
+[[nodiscard]] std::string progress_heading();
+
+/// A line per iterate; on a terminal one line that is overwritten, and kept every tenth time.
+class Progress {
+ public:
+  Progress();
+  void show(const solvers::IterationInfo& info);
+  void end() const;
+  /// All that were shown.
+  [[nodiscard]] const std::vector<solvers::IterationInfo>& iterations() const {
+    return iterations_;
+  }
+
+ private:
+  bool terminal_ = false;
+  std::vector<solvers::IterationInfo> iterations_;
+};
+
+/// A row per iterate.
+[[nodiscard]] std::string iterations_csv(const std::vector<solvers::IterationInfo>& iterations);
+
+/// A row per step: time, coordinates, rates, variables (x, y, z of each end effector), and the
+/// controls that acted until then.
+[[nodiscard]] std::string trajectory_csv(const Model& model, const TrajectoryValues& values);
+
+/// Makes the folder at once, so that a wrong name is known before the work.
+/// @throws IoError if it cannot be made
+void make_folder(const std::filesystem::path& folder);
+
+}  // namespace hbar::example

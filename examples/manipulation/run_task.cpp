@@ -1,0 +1,163 @@
+#include "run_task.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "examples/common/progress.h"
+#include "hbar/scene/atomic_file.h"
+
+namespace hbar::manipulation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// @param enough  relative change of the objective at which five iterations in a row end a stage
+solvers::IpoptOptions ipopt_options(const TaskOptions& options, int iterations_left,
+                                    double enough) {
+  solvers::IpoptOptions ipopt;
+  ipopt.tolerance = 2e-3;
+  ipopt.acceptable_tolerance = 1e2;
+  ipopt.max_iterations = iterations_left;
+  ipopt.integer_options["limited_memory_max_history"] = 30;
+  ipopt.integer_options["acceptable_iter"] = 5;
+  ipopt.number_options["acceptable_obj_change_tol"] = enough;
+  ipopt.number_options["mu_init"] = 1e-3;
+  ipopt.string_options["nlp_scaling_method"] = "none";
+  ipopt.stop = options.stop;
+  ipopt.on_iteration = [&options](const solvers::IterationInfo& info) {
+    if (options.on_iteration) {
+      options.on_iteration(info);
+    }
+    return true;
+  };
+  return ipopt;
+}
+
+std::string summary(const Task& task, const TaskResult& result) {
+  std::string text = fmt::format("result:      {}\n", result.last.message);
+  text += fmt::format("iterations:  {}\nobjective:   {:.6f} -> {:.6f}\n", result.iterations,
+                      result.start_objective, result.last.objective);
+  for (std::size_t i = 0; i < task.goals.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    text += fmt::format("goal:        {:<10} {:+.4f} +- {:g}: off by {:.5f} (first guess {:.5f})\n",
+                        task.goals[i].coordinate, task.goals[i].target, task.goals[i].tolerance,
+                        result.errors[k], result.start_errors[k]);
+  }
+  const Eigen::VectorXd lengths = result.problem->design(result.last.x);
+  for (std::size_t i = 0; i < task.phalanges.size(); ++i) {
+    text += fmt::format("length:      {:<16} {:.2f} mm\n", task.phalanges[i].body,
+                        1e3 * lengths[static_cast<Eigen::Index>(i)]);
+  }
+  const DesignProblemTimes& times = result.problem->times();
+  text += fmt::format("time:        {:.1f} s, of which {:.1f} s simulations, {:.1f} s gradients\n",
+                      result.last.elapsed, times.simulation, times.gradient);
+  return text + (result.reached(task) ? "goals:       all reached\n" : "goals:       MISSED\n");
+}
+
+Json list(const Eigen::VectorXd& numbers) {
+  return std::vector<double>(numbers.data(), numbers.data() + numbers.size());
+}
+
+std::string result_json(const Task& task, const TaskResult& result) {
+  Json out = {{"task", task.name},
+              {"status", std::string(solvers::to_string(result.last.status))},
+              {"reached", result.reached(task)},
+              {"iterations", result.iterations},
+              {"start_objective", result.start_objective},
+              {"objective", result.last.objective},
+              {"variable_names", result.problem->variables().names},
+              {"x", list(result.last.x)}};
+  out["goals"] = Json::array();
+  for (std::size_t i = 0; i < task.goals.size(); ++i) {
+    out["goals"].push_back({{"coordinate", task.goals[i].coordinate},
+                            {"target", task.goals[i].target},
+                            {"tolerance", task.goals[i].tolerance},
+                            {"error", result.errors[static_cast<Eigen::Index>(i)]}});
+  }
+  return out.dump(1) + '\n';
+}
+
+example::ExitCode run(const Task& task, const std::filesystem::path& out, int max_iterations) {
+  example::make_folder(out);
+  example::print(fmt::format("{}: {}\n{}\n", task.name, task.title, example::progress_heading()));
+  example::Progress progress;
+  TaskOptions options;
+  options.max_iterations = max_iterations;
+  options.stop = &example::stop_flag();
+  options.on_iteration = [&](const solvers::IterationInfo& info) { progress.show(info); };
+  const TaskResult result = solve_task(task, options);
+  progress.end();
+  scene::write_file_atomically(out / "result.json", result_json(task, result));
+  scene::write_file_atomically(
+      out / "trajectory.csv",
+      example::trajectory_csv(result.problem->parts().simulator.model(), result.values));
+  scene::write_file_atomically(out / "iterations.csv",
+                               example::iterations_csv(progress.iterations()));
+  example::print(summary(task, result));
+  example::print(
+      fmt::format("written:     {}/result.json, trajectory.csv, iterations.csv\n", out.string()));
+  if (result.last.status == solvers::IpoptStatus::kInterrupted) {
+    return example::ExitCode::kInterrupted;
+  }
+  return result.last.converged() && result.reached(task) ? example::ExitCode::kOk
+                                                         : example::ExitCode::kNotConverged;
+}
+
+}  // namespace
+
+bool TaskResult::reached(const Task& task) const {
+  for (std::size_t i = 0; i < task.goals.size(); ++i) {
+    if (!(errors[static_cast<Eigen::Index>(i)] <= task.goals[i].tolerance)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+TaskResult solve_task(const Task& task, const TaskOptions& options) {
+  TaskResult out;
+  {
+    const auto full = make_problem(task, 1.0);
+    out.start_errors = goal_errors(task, full->parts().simulator.model(),
+                                   full->trajectory_values(full->variables().start));
+  }
+  Eigen::VectorXd x;
+  for (const double scale : task.contact_scales) {
+    out.problem = make_problem(task, scale, x);
+    if (x.size() == 0) {
+      out.start_objective = out.problem->objective(out.problem->variables().start);
+    }
+    // Only the last stage is worth the last digits.
+    const double enough = scale == task.contact_scales.back() ? 3e-3 : 4e-2;
+    out.last = solvers::solve_with_ipopt(
+        *out.problem, ipopt_options(options, options.max_iterations - out.iterations, enough));
+    out.iterations += out.last.iterations;
+    x = out.last.x;
+    if (out.last.status == solvers::IpoptStatus::kInterrupted) {
+      break;
+    }
+  }
+  out.values = out.problem->trajectory_values(out.last.x);
+  out.errors = goal_errors(task, out.problem->parts().simulator.model(), out.values);
+  return out;
+}
+
+example::ExitCode run_task(const Task& task, int argc, char** argv) {
+  std::filesystem::path out = "results/" + task.name;
+  int max_iterations = 100;
+  CLI::App app(task.title, task.name);
+  app.add_option("--out", out, "Folder for the results.")->capture_default_str();
+  app.add_option("--max-iterations", max_iterations, "Of Ipopt.")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? example::ExitCode::kOk : example::ExitCode::kUsage;
+  }
+  return run(task, out, max_iterations);
+}
+
+}  // namespace hbar::manipulation

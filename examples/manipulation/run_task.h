@@ -1,0 +1,38 @@
+#pragma once
+
+#include "examples/common/process.h"
+#include "hbar/solvers/ipopt.h"
+#include "task.h"
+
+namespace hbar::manipulation {
+
+/// How an optimisation of a task is done; tests ask for less.
+struct TaskOptions {
+  int max_iterations = 100;  ///< all stages of the continuation together
+  std::function<void(const solvers::IterationInfo&)> on_iteration;  ///< may be empty
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// What came of a task.
+struct TaskResult {
+  std::unique_ptr<DesignProblem> problem;  ///< of the last stage
+  solvers::IpoptResult last;               ///< of the last stage
+  int iterations = 0;                      ///< of all stages
+  double start_objective = 0.0;            ///< of the first guess, first stage
+  Eigen::VectorXd start_errors;            ///< goal_errors of the first guess, s = 1   [goals]
+  Eigen::VectorXd errors;                  ///< goal_errors at the end                  [goals]
+  TrajectoryValues values;                 ///< at the end
+
+  /// Whether every goal is met within its tolerance.
+  [[nodiscard]] bool reached(const Task& task) const;
+};
+
+/// Solves a task with Ipopt (limited-memory BFGS), contact scale by contact scale, each from the
+/// last one's result. A stage ends when the optimality error is small, or when five iterations in a
+/// row changed the objective by less than 0.3 % (4 % before the last stage).
+[[nodiscard]] TaskResult solve_task(const Task& task, const TaskOptions& options);
+
+/// A program: command line, progress, summary, and result.json, trajectory.csv, iterations.csv.
+[[nodiscard]] example::ExitCode run_task(const Task& task, int argc, char** argv);
+
+}  // namespace hbar::manipulation

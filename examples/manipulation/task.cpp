@@ -1,0 +1,170 @@
+#include "task.h"
+
+#include <algorithm>
+
+#include "hbar/adjoint/objective_terms.h"
+#include "hbar/core/error.h"
+#include "hbar/scene/build_model.h"
+#include "hbar/scene/read_xml.h"
+
+namespace hbar::manipulation {
+namespace {
+
+int coordinate_index(const Model& model, const std::string& name) {
+  for (int i = 0; i < model.dof(); ++i) {
+    if (model.coordinate_name(i) == name) {
+      return i;
+    }
+  }
+  throw InvalidInput(concat("the scene has no coordinate '", name, "'"));
+}
+
+/// The first guess, block by block.                                        [controls x blocks]
+Eigen::MatrixXd guessed_controls(const Task& task, int controls) {
+  const int blocks = (task.steps + task.hold - 1) / task.hold;
+  Eigen::MatrixXd out(controls, blocks);
+  for (int b = 0; b < blocks; ++b) {
+    const double share = (b + 1.0) / blocks;
+    std::size_t next = 0;
+    while (next + 1 < task.guess.size() && task.guess[next].share < share) {
+      ++next;
+    }
+    const WayPoint& after = task.guess[next];
+    const WayPoint& before = task.guess[next == 0 ? 0 : next - 1];
+    const double span = after.share - before.share;
+    const double w = span > 0.0 ? std::min(1.0, (share - before.share) / span) : 1.0;
+    out.col(b) = (1.0 - w) * before.controls + w * after.controls;
+  }
+  return out;
+}
+
+/// ½ Σ_k ‖(u_k − u_{k−1}) / scale‖²: what held positions have to move.
+TermPointer control_changes(const Eigen::VectorXd& scale) {
+  const Eigen::VectorXd weight = scale.cwiseAbs2().cwiseInverse();
+  const auto changes = [](const TrajectoryValues& values) -> Eigen::MatrixXd {
+    const Eigen::Index steps = values.u.cols();
+    return values.u.rightCols(steps - 1) - values.u.leftCols(steps - 1);
+  };
+  return user_term(
+      "changes of controls",
+      [=](const TrajectoryValues& values) {
+        return 0.5 * (weight.asDiagonal() * changes(values).cwiseAbs2()).sum();
+      },
+      [=](const TrajectoryValues& values, TrajectoryPartials& partials) {
+        const Eigen::MatrixXd weighted = weight.asDiagonal() * changes(values);
+        partials.u.rightCols(weighted.cols()) += weighted;
+        partials.u.leftCols(weighted.cols()) -= weighted;
+      });
+}
+
+TermPointer rest_at_end(double weight) {
+  return user_term(
+      "rest at the end",
+      [weight](const TrajectoryValues& values) {
+        return 0.5 * weight * values.qdot.rightCols<1>().squaredNorm();
+      },
+      [weight](const TrajectoryValues& values, TrajectoryPartials& partials) {
+        partials.qdot.rightCols<1>() += weight * values.qdot.rightCols<1>();
+      });
+}
+
+/// ½ weight Σ_k h ((q_k − path_k) / tolerance)² of the goals, where the path rises smoothly from
+/// the start to the target and stays there for the last part of the time.
+TermPointer goal_paths(const Task& task, const Model& model, const Eigen::VectorXd& q0) {
+  std::vector<int> index;
+  for (const Goal& goal : task.goals) {
+    index.push_back(coordinate_index(model, goal.coordinate));
+  }
+  const auto miss = [=](const TrajectoryValues& values, std::size_t i, Eigen::Index k) {
+    const double last = static_cast<double>(values.q.cols() - 1);
+    const double share = std::clamp(
+        (static_cast<double>(k) / last - task.path_begin) / (task.path_end - task.path_begin), 0.0,
+        1.0);
+    const double rise = share * share * (3.0 - 2.0 * share);
+    const double start = q0[index[i]];
+    const double path = start + rise * (task.goals[i].target - start);
+    return values.q(index[i], k) - path;
+  };
+  return user_term(
+      "paths to the goals",
+      [=](const TrajectoryValues& values) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < index.size(); ++i) {
+          for (Eigen::Index k = 1; k < values.q.cols(); ++k) {
+            const double e = miss(values, i, k);
+            sum += 0.5 * task.goals[i].weight * values.h * e * e;
+          }
+        }
+        return sum;
+      },
+      [=](const TrajectoryValues& values, TrajectoryPartials& partials) {
+        for (std::size_t i = 0; i < index.size(); ++i) {
+          for (Eigen::Index k = 1; k < values.q.cols(); ++k) {
+            partials.q(index[i], k) += task.goals[i].weight * values.h * miss(values, i, k);
+          }
+        }
+      });
+}
+
+std::vector<FixedParameter> fixed_parameters(const Task& task, double contact_scale) {
+  std::vector<FixedParameter> fixed;
+  for (const std::string& body : task.scaled_bodies) {
+    fixed.push_back({"body." + body + ".contact_scale", contact_scale});
+  }
+  return fixed;
+}
+
+}  // namespace
+
+std::unique_ptr<DesignProblem> make_problem(const Task& task, double contact_scale,
+                                            const Eigen::VectorXd& start) {
+  const scene::Scene scene = scene::read_scene(task.scene);
+  const Model model = scene::build_model(scene);
+  const std::vector<FixedParameter> fixed = fixed_parameters(task, contact_scale);
+  const ParameterSet set = length_parameters(model, task.phalanges, fixed);
+  HeldControls controls;
+  controls.hold = task.hold;
+  controls.start = guessed_controls(task, model.control_count());
+  controls.lower = -task.control_bound;
+  controls.upper = task.control_bound;
+  controls.scale = task.control_scale;
+  auto map = std::make_shared<LengthMap>(model, task.phalanges, fixed, set, task.length_share);
+  if (start.size() > 0) {
+    const Eigen::Index lengths = map->variables().size();
+    controls.start =
+        start.tail(start.size() - lengths).reshaped(controls.start.rows(), controls.start.cols());
+    map->begin_at(start.head(lengths));
+  }
+  SimulationOptions simulation;
+  simulation.integrator = "bdf1";
+  simulation.h = task.duration / task.steps;
+  simulation.steps = task.steps;
+  Eigen::VectorXd q0 = Eigen::VectorXd::Zero(model.dof());
+  for (const auto& [name, value] : task.start) {
+    q0[coordinate_index(model, name)] = value;
+  }
+  Objective objective(control_changes(task.control_scale));
+  objective.add(goal_paths(task, model, q0));
+  objective.add(squared_velocity(task.velocity_weight)).add(rest_at_end(task.rest_weight));
+  return std::make_unique<DesignProblem>(
+      DesignProblemParts{.simulator = Simulator(model, set, simulation),
+                         .map = std::move(map),
+                         .objective = std::move(objective),
+                         .constraints = {},
+                         .controls = std::move(controls),
+                         .q0 = q0,
+                         .qdot0 = {},
+                         .design_weight = 1e-2});
+}
+
+Eigen::VectorXd goal_errors(const Task& task, const Model& model, const TrajectoryValues& values) {
+  Eigen::VectorXd errors(static_cast<Eigen::Index>(task.goals.size()));
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    const Goal& goal = task.goals[static_cast<std::size_t>(i)];
+    const int coordinate = coordinate_index(model, goal.coordinate);
+    errors[i] = std::abs(values.q(coordinate, values.q.cols() - 1) - goal.target);
+  }
+  return errors;
+}
+
+}  // namespace hbar::manipulation

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hbar/adjoint/design_problem.h"
+#include "length_map.h"
+
+namespace hbar::manipulation {
+
+/// Where a coordinate shall be when time is up.
+struct Goal {
+  std::string coordinate;  ///< name, as Model::coordinate_name gives it
+  double target = 0.0;     ///< rad or length
+  double tolerance = 0.0;  ///< rad or length
+  double weight = 0.0;     ///< of ½ ∫ (q − path)² dt
+};
+
+/// Controls at a share of the horizon; between two of them the first guess is linear.
+struct WayPoint {
+  double share = 0.0;        ///< of the horizon, 0 … 1
+  Eigen::VectorXd controls;  ///<                                                      [controls]
+};
+
+/// Something to do with the hands: a scene whose motors go to positions, where it starts, what
+/// shall be reached, and a first guess that need not reach it.
+struct Task {
+  std::string name;   ///< of the program
+  std::string title;  ///< one line for people
+  std::filesystem::path scene;
+  double duration = 1.5;  ///< s
+  int steps = 300;
+  int hold = 10;                                      ///< steps during which a control stays
+  std::vector<std::pair<std::string, double>> start;  ///< coordinates that do not start at 0
+  std::vector<WayPoint> guess;
+  std::vector<Goal> goals;
+  double path_begin = 0.1;         ///< share of the horizon at which goal coordinates set out
+  double path_end = 0.8;           ///< share of the horizon at which they shall have arrived
+  std::vector<Phalanx> phalanges;  ///< whose lengths are free
+  double length_share = 0.3;       ///< see LengthMap
+  double velocity_weight = 0.0;    ///< of ½ ∫ ‖q̇‖² dt: slow motions meet fewer surprises
+  double rest_weight = 0.0;        ///< of ½ ‖q̇‖² at the end
+  Eigen::VectorXd control_scale;   ///< typical size of a change                      [controls]
+  Eigen::VectorXd control_bound;   ///< |control| ≤                                   [controls]
+  std::vector<double> contact_scales = {1.0};  ///< continuation: s of (13), (14), last is 1
+  std::vector<std::string> scaled_bodies;      ///< bodies whose s that is
+};
+
+/// A task's optimisation: design variables are the lengths, controls are held positions. What is
+/// minimised is ½ Σ (changes of controls from block to block, in their scale)², with a small weight
+/// on the design's change, subject to the goals.
+///
+/// @param contact_scale  s of the scaled bodies
+/// @param start          where to begin; empty: the first guess                       [x]
+/// @throws InvalidInput if the task does not suit its scene
+[[nodiscard]] std::unique_ptr<DesignProblem> make_problem(const Task& task, double contact_scale,
+                                                          const Eigen::VectorXd& start = {});
+
+/// |coordinate − target| of each goal at the end.                                       [goals]
+[[nodiscard]] Eigen::VectorXd goal_errors(const Task& task, const Model& model,
+                                          const TrajectoryValues& values);
+
+}  // namespace hbar::manipulation
