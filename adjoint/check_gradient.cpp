@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <optional>
 #include <random>
 
 #include "hbar/adjoint/gradient.h"
 #include "hbar/adjoint/tangent.h"
+#include "hbar/core/contact_forces.h"
 
 namespace hbar {
 namespace {
@@ -115,6 +117,93 @@ double log_slope(const std::vector<double>& x, const std::vector<double>& y) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
+/// Tells the smooth pieces of Ψ apart. Contact bends it wherever, at some stage, a point begins to
+/// touch, to slide or to feel another face, and halved steps and changes of chart make it jump:
+/// differences across such a place mix the derivatives of both sides.
+class PieceReader {
+ public:
+  explicit PieceReader(Simulator& simulator)
+      : simulator_(simulator),
+        mechanism_(nominal_mechanism<double>(simulator.model())),
+        motion_(simulator.model().tree()),
+        contacts_(simulator.model()),
+        none_(Eigen::VectorXd::Zero(simulator.model().dof())) {}
+
+  /// Numbers that are the same for two trajectories exactly if no such place separates them.
+  std::vector<int> read(const Trajectory& trajectory, const TrajectoryValues& values) {
+    const Model& model = simulator_.model();
+    std::vector<int> piece;
+    for (int k = 0; k <= trajectory.step_count(); ++k) {
+      piece.push_back(trajectory.timeline.step_end(k));
+    }
+    for (const ChartSwitch& change : trajectory.chart_switches) {
+      piece.insert(piece.end(), {change.stage, change.node});
+    }
+    if (model.contact_count() > 0) {
+      apply_parameters<double>(model, simulator_.parameters(), trajectory.inputs.p, mechanism_);
+      for (int stage = 1; stage < trajectory.timeline.stage_count(); ++stage) {
+        read_contacts(trajectory.q.col(stage), trajectory.qdot.col(stage), piece);
+      }
+    }
+    read_sensors(values, piece);
+    return piece;
+  }
+
+ private:
+  void read_contacts(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot,
+                     std::vector<int>& piece) {
+    const Model& model = simulator_.model();
+    compute_motion<double>(model.tree(), mechanism_, q, qdot, none_, motion_);
+    contacts_.linearize(mechanism_, motion_);
+    for (const ActivePair<double>& pair : contacts_.active()) {
+      const Contact& contact = model.contact(pair.contact);
+      const bool own = std::holds_alternative<OwnShape>(contact.surface);
+      const Shape& shape = model.link(std::max(contact.other, 0)).body.shape;
+      for (const TouchingPoint<double>& point : contacts_.points(pair)) {
+        const double normal = point.force.normal;
+        piece.insert(piece.end(),
+                     {pair.contact, point.index, point.force.sticks ? 1 : 0,
+                      static_cast<int>(normal > 0.0) - static_cast<int>(normal < 0.0),
+                      own ? face(shape, pair.motion.b.X_WB.R.transpose() * point.n) : 0});
+      }
+    }
+    piece.push_back(-1);
+  }
+
+  /// Which face of a solid with edges has the normal n, in its frame.
+  static int face(const Shape& shape, const Eigen::Vector3d& n) {
+    if (std::holds_alternative<Cylinder>(shape)) {
+      return std::abs(n.z()) > 0.5 ? 1 : 0;
+    }
+    int axis = 0;
+    if (std::holds_alternative<Cuboid>(shape) && n.cwiseAbs().maxCoeff(&axis) > 0.5) {
+      return n[axis] > 0.0 ? axis + 1 : -axis - 1;
+    }
+    return 0;
+  }
+
+  /// Which points of sensors touch and, of these, which slide: their shear is at its bound.
+  void read_sensors(const TrajectoryValues& values, std::vector<int>& piece) const {
+    for (Eigen::Index k = 0; k < values.tactile.cols(); ++k) {
+      Eigen::Index at = 0;
+      for (const TactileSensor& sensor : simulator_.model().tactile_sensors()) {
+        for (Eigen::Index i = 0; i < sensor.points.cols(); ++i, at += 3) {
+          const Eigen::Vector3d reading = values.tactile.col(k).segment<3>(at);
+          const double bound = sensor.coefficients.mu * std::abs(reading[2]);
+          const bool slides = reading.head<2>().norm() > (1.0 - 1e-9) * bound;
+          piece.push_back(reading[2] == 0.0 ? 0 : slides ? 1 : 2);
+        }
+      }
+    }
+  }
+
+  Simulator& simulator_;
+  Mechanism<double> mechanism_;
+  Motion<double> motion_;
+  ContactForces<double> contacts_;
+  Eigen::VectorXd none_;
+};
+
 /// Everything the probes of one problem share.
 class Prober {
  public:
@@ -122,18 +211,18 @@ class Prober {
       : problem_(problem),
         options_(options),
         simulator_(tightened(problem.simulator)),
+        pieces_(simulator_),
         random_(options.seed) {
-    const Trajectory trajectory = simulator_.rollout(problem.inputs).trajectory();
-    const TrajectoryValues values = simulator_.values(trajectory);
-    const TrajectoryPartials partials = problem.objective.partials(values);
-    partials_ = std::make_unique<TrajectoryPartials>(partials);
+    trajectory_ = simulator_.rollout(problem.inputs).trajectory();
+    const TrajectoryValues values = simulator_.values(trajectory_);
+    partials_ = std::make_unique<TrajectoryPartials>(problem.objective.partials(values));
     value_ = problem.objective.value(values);
     AdjointSweep sweep(simulator_);
-    const Gradient g = sweep.pull_back(trajectory, partials);
+    const Gradient g = sweep.pull_back(trajectory_, *partials_);
     adjoint_norm_ = sweep.adjoint().norm();
     gradient_ = flatten(g.p, g.u, g.q0, g.qdot0);
     x_ = flatten(problem.inputs.p, problem.inputs.u, problem.inputs.q0, problem.inputs.qdot0);
-    trajectory_ = trajectory;
+    piece_ = pieces_.read(trajectory_, values);
     tangent_ = std::make_unique<TangentSweep>(simulator_);
   }
 
@@ -160,9 +249,17 @@ class Prober {
     return Simulator(simulator.model(), simulator.parameters(), options);
   }
 
-  double value_at(const Eigen::VectorXd& x) {
+  /// Ψ; nothing where the simulation fails or x is on another smooth piece than the nominal inputs.
+  std::optional<double> value_at(const Eigen::VectorXd& x) {
     const Rollout rollout = simulator_.rollout(unflatten(problem_.inputs, x));
-    return problem_.objective.value(simulator_.values(rollout.trajectory()));
+    if (!rollout.converged()) {
+      return std::nullopt;
+    }
+    const TrajectoryValues values = simulator_.values(rollout.trajectory());
+    if (pieces_.read(rollout.trajectory(), values) != piece_) {
+      return std::nullopt;
+    }
+    return problem_.objective.value(values);
   }
 
   void probe(const InputClass& inputs, GradientCheckRow& row) {
@@ -198,27 +295,39 @@ class Prober {
     return std::abs(slope - forward) / std::max({scale, product, dual_product});
   }
 
-  /// Central differences, extrapolated once, at steps from 1e-2 down: the best of them counts.
-  /// The Taylor remainder is followed while it stands well above rounding.
+  /// Central differences, extrapolated once, at steps from 2e-2 down: the best of them counts.
+  /// The Taylor remainder is followed while it stands well above rounding. Smaller steps are taken
+  /// for those that leave the smooth piece of Ψ.
   void differences(const Eigen::VectorXd& d, double slope, double scale, GradientCheckRow& row) {
     constexpr int kSteps = 12;
+    constexpr double kSmallestStep = 1e-7;
     const double rounding = 1e-13 * std::max(std::abs(value_), scale);
     std::vector<double> steps;
     std::vector<double> remainders;
     double best = std::numeric_limits<double>::infinity();
     double last_difference = 0.0;
-    double step = 2e-2;
-    for (int i = 0; i < kSteps; ++i, step *= 0.5) {
-      const double ahead = value_at(x_ + step * d);
-      const double behind = value_at(x_ - step * d);
-      const double difference = (ahead - behind) / (2.0 * step);
+    int taken = 0;
+    for (double step = 2e-2; taken < kSteps && step > kSmallestStep; step *= 0.5) {
+      const std::optional<double> ahead = value_at(x_ + step * d);
+      const std::optional<double> behind = ahead ? value_at(x_ - step * d) : std::nullopt;
+      if (!behind) {
+        taken = 0;  // larger steps that came back to the piece have been elsewhere in between
+        steps.clear();
+        remainders.clear();
+        best = std::numeric_limits<double>::infinity();
+        continue;
+      }
+      const double difference = (*ahead - *behind) / (2.0 * step);
       best = std::min(best, std::abs(difference - slope));
-      if (i > 0) {
+      if (taken > 0) {
         const double extrapolated = (4.0 * difference - last_difference) / 3.0;
         best = std::min(best, std::abs(extrapolated - slope));
       }
       last_difference = difference;
-      const double remainder = std::abs(ahead - value_ - step * slope);
+      ++taken;
+      // The larger of both sides: one alone may change its sign, where it has no order.
+      const double remainder = std::max(std::abs(*ahead - value_ - step * slope),
+                                        std::abs(*behind - value_ + step * slope));
       if (remainder > 1e3 * rounding) {
         steps.push_back(step);
         remainders.push_back(remainder);
@@ -240,12 +349,14 @@ class Prober {
   Problem& problem_;
   const GradientCheckOptions& options_;
   Simulator simulator_;
+  PieceReader pieces_;
   std::mt19937 random_;
   double value_ = 0.0;
   double adjoint_norm_ = 0.0;
   Eigen::VectorXd gradient_;
   Eigen::VectorXd x_;
   Trajectory trajectory_;
+  std::vector<int> piece_;
   std::unique_ptr<TrajectoryPartials> partials_;
   std::unique_ptr<TangentSweep> tangent_;
 };
