@@ -1,0 +1,156 @@
+// Stiff contact in centimetres and grams, k_n = 1e6 g/s² and μ = 1.5 at steps of 5 ms: Newton's
+// method must manage almost without halving steps, and gradients pass through the halved ones.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "hbar/adjoint/check_gradient.h"
+#include "hbar/adjoint/objective_terms.h"
+#include "hbar/core/rotation.h"
+#include "tests/system/contact_scenes.h"
+
+namespace hbar {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kStep = 0.005;
+constexpr int kSteps = 200;
+
+struct Stiff {
+  double kt = 1e3;
+  double damping = 0.0;
+  int grid = 2;  // contact points along the box's sides
+};
+
+/// A box of 32 g above the ground.
+int add_box(ModelBuilder& builder, const Stiff& stiff) {
+  builder.set_gravity({0.0, 0.0, -981.0});
+  Body body = solid_body("box", Cuboid{{4.0, 4.0, 2.0}}, 1.0);
+  body.contact_points =
+      surface_points(body.shape, {.cuboid = {stiff.grid, stiff.grid, stiff.grid}});
+  const int box = builder.add_link(-1, Joint{.name = "free", .kind = Free3dExpJoint{}}, body);
+  builder.add_end_effector({.name = "corner", .link = box, .position = {1.0, 0.5, 0.3}});
+  return box;
+}
+
+ContactCoefficients coefficients(const Stiff& stiff) {
+  return {.kn = 1e6, .kt = stiff.kt, .mu = 1.5, .damping = stiff.damping};
+}
+
+/// The box, thrown.
+Problem drop(const std::string& integrator, const Stiff& stiff) {
+  ModelBuilder builder("drop", Units::kCentimetreGram);
+  const int box = add_box(builder, stiff);
+  builder.add_contact({.link = box, .surface = Plane{}, .coefficients = coefficients(stiff)});
+  const Model model = builder.build();
+  Problem problem{
+      testing::contact_simulator(model, integrator, kStep, kSteps, ParameterSet::all(model)),
+      Objective(squared_variables()),
+      {}};
+  problem.inputs = problem.simulator.nominal_inputs();
+  problem.inputs.q0 << 0.0, 0.0, 3.0, 0.2, -0.15, 0.3;
+  problem.inputs.qdot0 << 60.0, 20.0, -30.0, 1.0, 2.0, -3.0;
+  return problem;
+}
+
+/// The box at rest height, pressed and dragged by a finger of two links with some 4e4 dyn.
+Problem press(const std::string& integrator, const Stiff& stiff) {
+  ModelBuilder builder("press", Units::kCentimetreGram);
+  const int box = add_box(builder, stiff);
+  const Eigen::Matrix3d along_x = exp_rotation<double>(Vector3d(0.0, 0.5 * std::numbers::pi, 0.0));
+  Joint shoulder{.name = "shoulder", .kind = RevoluteJoint{Vector3d::UnitY()}, .damping = 1e3};
+  shoulder.X_PJ.p = {-6.0, 0.0, 8.0};
+  const int upper = builder.add_link(
+      -1, shoulder, solid_body("upper", Capsule{0.5, 5.0}, 1.0, {along_x, {2.5, 0.0, 0.0}}));
+  Joint elbow{.name = "elbow", .kind = RevoluteJoint{Vector3d::UnitY()}, .damping = 1e3};
+  elbow.X_PJ.p = {5.0, 0.0, 0.0};
+  Body tip = solid_body("tip", Capsule{0.5, 4.0}, 1.0, {along_x, {2.0, 0.0, 0.0}});
+  tip.contact_points = surface_points(tip.shape, {.capsule = {5, 8}});
+  const int lower = builder.add_link(upper, elbow, tip);
+  for (const int link : {upper, lower}) {
+    builder.add_motor({.link = link,
+                       .kind = Motor::Kind::kPosition,
+                       .lower = -3e5,
+                       .upper = 3e5,
+                       .P = 1e6,
+                       .D = 2e4,
+                       .implicit = true});
+  }
+  builder.add_contact({.link = box, .surface = Plane{}, .coefficients = coefficients(stiff)});
+  builder.add_contact({.link = lower, .other = box, .coefficients = coefficients(stiff)});
+  builder.add_end_effector({.name = "tip", .link = lower, .position = {4.5, 0.0, 0.0}});
+  const Model model = builder.build();
+  Problem problem{
+      testing::contact_simulator(model, integrator, kStep, kSteps, ParameterSet::all(model)),
+      Objective(squared_variables()),
+      {}};
+  problem.inputs = problem.simulator.nominal_inputs();
+  problem.inputs.q0 << 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.7;
+  for (int k = 0; k < kSteps; ++k) {
+    problem.inputs.u.col(k) << 0.55 * std::min(k / 50.0, 1.0), 0.7 + 0.25 * std::sin(0.05 * k);
+  }
+  return problem;
+}
+
+/// Steps of a trajectory that took more stages than their method has.
+int halved_steps(const Trajectory& trajectory, const Integrator& integrator) {
+  int halved = 0;
+  for (int k = 0; k < trajectory.step_count(); ++k) {
+    const int stages = trajectory.timeline.step_end(k + 1) - trajectory.timeline.step_end(k);
+    const bool starts = k == 0;  // its starter has other stages
+    const int usual =
+        static_cast<int>((starts ? find_integrator(integrator.starter) : integrator).stages.size());
+    halved += stages > usual ? 1 : 0;
+  }
+  return halved;
+}
+
+class StiffContactOfEveryIntegrator : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(StiffContactOfEveryIntegrator, ConvergesInAFewIterationsAlmostWithoutHalving) {
+  const Integrator& integrator = find_integrator(GetParam());
+  for (const bool pressed : {false, true}) {
+    for (const double kt : {1e2, 1e3, 1e4}) {
+      for (const double damping : {0.0, 1e3}) {
+        for (const int grid : {2, 6}) {
+          const Stiff stiff{kt, damping, grid};
+          Problem problem = pressed ? press(GetParam(), stiff) : drop(GetParam(), stiff);
+          const Rollout rollout = problem.simulator.rollout(problem.inputs);
+          ASSERT_TRUE(rollout.converged()) << rollout.report().message;
+          const Trajectory& trajectory = rollout.trajectory();
+          double iterations = 0.0;
+          for (int k = 0; k < kSteps; ++k) {
+            iterations += trajectory.newton_iterations(k);
+          }
+          // Measured: 2.3 to 4.4 a stage; one step halved where the finger hits the box at k_t =
+          // 1e4.
+          EXPECT_LT(iterations / trajectory.timeline.last_stage(), 6.0) << pressed << ' ' << kt;
+          EXPECT_LE(halved_steps(trajectory, integrator), 1) << pressed << ' ' << kt;
+          int touching = 0;
+          for (const auto& step : problem.simulator.contact_history(trajectory)) {
+            touching += step.back().active > 0 ? 1 : 0;
+          }
+          EXPECT_GT(touching, pressed ? 150 : 5) << pressed << ' ' << kt;
+        }
+      }
+    }
+  }
+}
+
+TEST(StiffContact, HasAGradientThroughAHalvedStep) {
+  const Stiff stiff{.kt = 1e4, .damping = 1e3, .grid = 2};
+  Problem problem = press("bdf1", stiff);
+  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+  ASSERT_EQ(halved_steps(trajectory, find_integrator("bdf1")), 1);
+  const GradientCheckReport report = check_gradient(problem, {.directions = 1});
+  EXPECT_TRUE(report.passed()) << report.table();
+}
+
+INSTANTIATE_TEST_SUITE_P(All, StiffContactOfEveryIntegrator,
+                         ::testing::Values("bdf1", "sdirk2", "bdf2"),
+                         [](const auto& run) { return run.param; });
+
+}  // namespace
+}  // namespace hbar
