@@ -33,10 +33,10 @@ struct Scene {
   double radius = 0.0;           ///< of that ball; 0: contact points
 };
 
-constexpr int kSurfaces = 7;
+constexpr int kSurfaces = 11;
 
-/// Surfaces by number: a cuboid, a ball, a cylinder, a capsule, a field, a plane, and a ball on
-/// one.
+/// Pairs by number: points in a cuboid, a ball, a cylinder, a capsule, below a plane, in a field;
+/// then a ball against the first five.
 Scene random_scene(int surface, Reaction reaction, Random& random) {
   const std::vector<Shape> shapes = {Cuboid{{3.0, 3.5, 4.0}}, Sphere{2.0}, Cylinder{2.0, 4.0},
                                      Capsule{1.5, 2.0}};
@@ -45,13 +45,15 @@ Scene random_scene(int surface, Reaction reaction, Random& random) {
   scene.contact.friction_law =
       random.between(0.0, 1.0) < 0.5 ? FrictionLaw::kDocument : FrictionLaw::kSmooth;
   scene.contact.friction_width = 0.5;
-  if (surface < 4) {
-    scene.other = shapes[static_cast<std::size_t>(surface)];
-  } else if (surface == 4) {
+  const bool ball = surface > 5;
+  const int kind = ball ? surface - 6 : surface;
+  if (kind < 4) {
+    scene.other = shapes[static_cast<std::size_t>(kind)];
+  } else if (kind == 4) {
+    scene.contact.surface = Plane{random.vector3(0.2), random.direction()};
+  } else {
     scene.contact.surface =
         std::make_shared<const testing::QuadricField>(Vector3d(1.0, 0.7, 1.4).asDiagonal(), 2.5);
-  } else {
-    scene.contact.surface = Plane{random.vector3(0.2), random.direction()};
   }
   scene.k = {random.between(1.0, 5.0), random.between(0.2, 1.0), random.between(0.2, 1.0),
              random.between(0.1, 1.0), random.between(0.5, 2.0)};
@@ -59,7 +61,7 @@ Scene random_scene(int surface, Reaction reaction, Random& random) {
     return {testing::random_pose(random), random.vector(6, 2.0)};
   };
   scene.motion = {body(), body()};
-  scene.radius = surface == 6 ? 2.0 : 0.0;
+  scene.radius = ball ? 0.8 : 0.0;
   // Points in A's frame that lie within B.
   const auto& motion = scene.motion;
   const RigidTransform<double> X_AB = inverse(motion.a.X_WB) * motion.b.X_WB;
@@ -68,8 +70,10 @@ Scene random_scene(int surface, Reaction reaction, Random& random) {
   std::copy(listed.begin(), listed.end(), present.begin());
   const SurfaceDistance<double> distance(scene.contact.surface, scene.other, present);
   while (scene.points.size() < 3) {
-    const Vector3d x_B = random.vector3(1.4);
-    if (distance.lower_bound(x_B) < scene.radius - 0.05) {
+    // A ball's centre may be outside, and beside a corner.
+    const Vector3d x_B = random.vector3(ball ? 3.0 : 1.4);
+    const double d = distance.sample(x_B).d - scene.radius;
+    if (d < -0.05 && (!ball || d > -1.5)) {
       scene.points.push_back(X_AB.R * x_B + X_AB.p);
     }
   }
@@ -213,8 +217,8 @@ TEST_P(EveryPair, ReadsItsPointAsTheBodiesMove) {
       EXPECT_LT(relative_gap(point.lever, centre), 1e-14);
       EXPECT_LT(relative_gap(point.x, centre - at.radius * point.n), 1e-14);
       EXPECT_LT(relative_gap(point.x, b.X_WB.R * point.x_B + b.X_WB.p), 1e-14);
-      const SurfaceSample<double> sample = distance.sample(point.x_B);
-      EXPECT_NEAR(point.d, sample.d, 1e-14);
+      const SurfaceSample<double> sample = distance.sample(point.lever_B);
+      EXPECT_NEAR(point.d, sample.d - at.radius, 1e-14);
       EXPECT_LT(point.d, 0.0);
       EXPECT_LT(relative_gap(point.n, b.X_WB.R * sample.n), 1e-14);
       EXPECT_LT(relative_gap(point.gradient, b.X_WB.R * sample.gradient), 1e-14);
@@ -354,17 +358,20 @@ TEST_P(EveryPair, AnswersToSizesAsDualsDo) {
       Numbers<Dual> moved(at);
       moved.sizes[size].slope = 1.0;
       const auto by_size = [&](const TouchingPoint<double>& point) {
-        const SizeRate<double> rate = distance.by_size(point.x_B, size);
-        return PointChange<double>{.d = rate.d, .n = at.motion.b.X_WB.R * rate.n};
+        const SizeRate<double> rate = distance.by_size(point.lever_B, size);
+        const Vector3d n = at.motion.b.X_WB.R * rate.n;
+        return PointChange<double>{.place = -at.radius * n, .d = rate.d, .n = n};
       };
       expect_slopes(changes(at, by_size), wrenches(at, moved));
     }
     if (at.radius > 0.0) {
       Numbers<Dual> moved(at);
       moved.radius.slope = 1.0;
-      expect_slopes(
-          changes(at, [](const auto& point) { return PointChange<double>{.x = -point.n}; }),
-          wrenches(at, moved));
+      expect_slopes(changes(at,
+                            [](const auto& point) {
+                              return PointChange<double>{.place = -point.n, .d = -1.0};
+                            }),
+                    wrenches(at, moved));
     }
   }
   EXPECT_EQ(scene().points.size(), 3U);
