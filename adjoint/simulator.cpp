@@ -7,6 +7,12 @@
 #include "hbar/core/error.h"
 
 namespace hbar {
+namespace {
+
+/// No stage turns a joint farther than this from where its last acceleration would take it, rad.
+constexpr double kLargestTurn = 1.5;
+
+}  // namespace
 
 const Trajectory& Rollout::trajectory() const& {
   if (!converged()) {
@@ -77,6 +83,7 @@ struct Simulator::Workspace {
         system(model, mechanism),
         newton(model.dof()),
         x(model.dof()),
+        predicted(model.dof()),
         last_a(model.dof()),
         motion(model.tree()),
         end_effectors(model),
@@ -88,7 +95,8 @@ struct Simulator::Workspace {
   StageSystem system;
   solvers::Newton newton;
   Eigen::VectorXd x;
-  Eigen::VectorXd last_a;  // of the stage that was solved last
+  Eigen::VectorXd predicted;  // x before Newton's method
+  Eigen::VectorXd last_a;     // of the stage that was solved last
   Motion<double> motion;
   EndEffectors<double> end_effectors;
   TactileReadings<double> tactile;
@@ -175,9 +183,13 @@ bool Simulator::solve_stage(Trajectory& trajectory, int stage, RolloutReport& re
     work_->x += work_->last_a / row.rate;
   }
   work_->x /= row.rate;
+  work_->predicted = work_->x;
   const solvers::NewtonReport newton = work_->newton.solve(system, options_.newton, work_->x);
   report.last_newton = newton;
-  if (!newton.converged()) {
+  if (newton.converged() && strays(work_->predicted, work_->x)) {
+    report.last_newton.status = solvers::NewtonStatus::kStrayed;
+  }
+  if (!report.last_newton.converged()) {
     return false;
   }
   point.q = work_->x;
@@ -190,6 +202,25 @@ bool Simulator::solve_stage(Trajectory& trajectory, int stage, RolloutReport& re
     trajectory.factors[static_cast<std::size_t>(stage)] = system.lu;
   }
   return true;
+}
+
+/// Whether a solution is so far from its prediction that it must be another root: with contact, a
+/// stage may have some in which bodies have gone through each other.
+bool Simulator::strays(const Eigen::VectorXd& predicted, const Eigen::VectorXd& found) const {
+  if (model_->contacts().empty()) {
+    return false;
+  }
+  for (int i = 0; i < model_->tree().node_count(); ++i) {
+    const Node& node = model_->tree().node(i);
+    const bool turns =
+        node.motion == MotionKind::kRotation || node.motion == MotionKind::kExponential;
+    for (int c = node.coordinates.begin; turns && c < node.coordinates.end; ++c) {
+      if (!(std::abs(found[c] - predicted[c]) <= kLargestTurn)) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 void Simulator::switch_charts(Trajectory& trajectory) const {

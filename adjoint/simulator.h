@@ -110,6 +110,7 @@ class Simulator {
   void check_inputs(const Inputs& inputs) const;
   bool advance(Trajectory& trajectory, int step, double h, int depth, RolloutReport& report);
   bool solve_stage(Trajectory& trajectory, int stage, RolloutReport& report);
+  [[nodiscard]] bool strays(const Eigen::VectorXd& predicted, const Eigen::VectorXd& found) const;
   void switch_charts(Trajectory& trajectory) const;
   [[nodiscard]] std::string deepest_contact() const;
   [[nodiscard]] std::string failure_message(const Trajectory& trajectory, int step,

@@ -6,7 +6,7 @@ foreach(component IN LISTS HBAR_OPTIONAL_COMPONENTS)
     list(APPEND not_built PATTERN ${component}.h EXCLUDE)
   endif()
 endforeach()
-foreach(floor core scene solvers contact adjoint)
+foreach(floor core scene solvers adjoint)
   if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${floor})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${floor}/
             DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hbar/${floor}

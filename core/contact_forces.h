@@ -135,8 +135,13 @@ void ContactForces<S>::add_displacement(const Motion<S>& motion, const Moves& mo
     const PairStiffness<S>& k = pair.stiffness;
     if (a != b) {
       const S sign = S(a ? 1.0 : -1.0);
-      change.on_a = sign * (k.K_a * D + k.C_a * psi_dot - cross_wrench<S>(D, pair.wrenches.on_a));
-      change.on_b = sign * (k.K_b * D + k.C_b * psi_dot);
+      const Vector6<S> answer = k.K_a * D + k.C_a * psi_dot;
+      change.on_a = sign * (answer - cross_wrench<S>(D, pair.wrenches.on_a));
+      if (surface) {
+        change.on_b = sign * (k.K_b * D + k.C_b * psi_dot);
+      } else {
+        change.on_b = -sign * answer;
+      }
     }
     if (surface && b) {
       change.on_a += k.E_a * psi_dot.template head<3>();

@@ -94,8 +94,11 @@ PointSlopes<S> point_slopes(Reaction reaction, const PairMotion<S>& motion,
 
 template <Scalar S>
 void add_wrenches(Reaction reaction, const TouchingPoint<S>& point, PairWrenches<S>& wrenches) {
-  wrenches.on_a += wrench_at<S>(point.x, point.force.f);
-  wrenches.on_b -= wrench_at<S>(reaction_point(reaction, point), point.force.f);
+  const Vector6<S> on_a = wrench_at<S>(point.x, point.force.f);
+  wrenches.on_a += on_a;
+  wrenches.on_b -= reaction == Reaction::kPoint
+                       ? on_a
+                       : wrench_at<S>(reaction_point(reaction, point), point.force.f);
 }
 
 template <Scalar S>

@@ -28,12 +28,23 @@ void for_each_contact_change(const ContactForces<S>& contacts, const Mechanism<S
       visit(index, pair.contact, wrench_change<S>(contact.reaction, pair.motion, point, by));
     };
     const int scale = set.index(ParameterKind::kContactScale, contact.link, 0);
+    std::array<int, 4> coefficients = {};
+    std::array<int, 3> sizes_of_a = {-1, -1, -1};
+    std::array<int, 3> sizes_of_b = {-1, -1, -1};
+    for (std::size_t k = 0; k < 4; ++k) {
+      coefficients[k] =
+          set.index(ParameterKind::kContactCoefficient, pair.contact, static_cast<int>(k));
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      sizes_of_a[k] = set.index(ParameterKind::kSize, contact.link, static_cast<int>(k));
+      sizes_of_b[k] = set.index(ParameterKind::kSize, contact.other, static_cast<int>(k));
+    }
     for (const TouchingPoint<S>& point : contacts.points(pair)) {
       if (scale >= 0) {
         changes(scale, point, {.f = point.law.by_scale});
       }
       for (int k = 0; k < 4; ++k) {
-        const int index = set.index(ParameterKind::kContactCoefficient, pair.contact, k);
+        const int index = coefficients[static_cast<std::size_t>(k)];
         if (index >= 0) {
           changes(index, point, {.f = point.law.by_coefficient[static_cast<std::size_t>(k)]});
         }
@@ -46,7 +57,7 @@ void for_each_contact_change(const ContactForces<S>& contacts, const Mechanism<S
         }
       }
       for (int k = 0; k < sizes_a; ++k) {
-        const int index = set.index(ParameterKind::kSize, contact.link, k);
+        const int index = sizes_of_a[static_cast<std::size_t>(k)];
         if (index < 0) {
           continue;
         }
@@ -59,7 +70,7 @@ void for_each_contact_change(const ContactForces<S>& contacts, const Mechanism<S
         }
       }
       for (int k = 0; k < surface.size_count(); ++k) {
-        const int index = set.index(ParameterKind::kSize, contact.other, k);
+        const int index = sizes_of_b[static_cast<std::size_t>(k)];
         if (index >= 0) {
           const SizeRate<S> rate = surface.by_size(point.lever_B, k);
           const Vector3<S> n = pair.motion.b.X_WB.R * rate.n;

@@ -15,8 +15,8 @@ namespace hbar {
 /// Cells along the longest side of a distance grid, by default and as allowed. n cells take at most
 /// 8 (n + 9)³ bytes: 1.5 MB for 48, 149 MB for 256.
 inline constexpr int kDistanceCells = 48;
-inline constexpr int kMinDistanceCells = 4;
-inline constexpr int kMaxDistanceCells = 256;
+inline constexpr int kMinDistanceCells = 4;    ///< fewest
+inline constexpr int kMaxDistanceCells = 256;  ///< most
 
 /// The signed distance of a solid as the tricubic spline through its exact values at the nodes of a
 /// uniform grid, three cells wider than the solid on every side.

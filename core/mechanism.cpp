@@ -1,7 +1,5 @@
 #include "hbar/core/mechanism.h"
 
-#include <algorithm>
-
 namespace hbar {
 namespace {
 
@@ -13,15 +11,14 @@ RigidTransform<S> cast(const RigidTransform<double>& X) {
 }  // namespace
 
 template <Scalar S>
-void Mechanism<S>::update_derived() {
+void Mechanism<S>::update_derived(const Model& model) {
   for (std::size_t i = 0; i < inertia.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     inertia[i] = body_inertia<S>(mass[k], moments.col(k), X_JB[i]);
-    double squared = 0.0;
-    for (const auto& point : contact_points[i].colwise()) {
-      squared = std::max(squared, value_of(S(point.squaredNorm())));
-    }
-    contact_radius[k] = std::sqrt(squared);
+    const Eigen::Matrix3Xd points =
+        contact_points[i].unaryExpr([](const S& entry) { return value_of(entry); });
+    contact_radius[k] = points.cols() == 0 ? 0.0 : points.colwise().norm().maxCoeff();
+    bound_clusters(model.point_clusters(static_cast<int>(i)), points, contact_clusters[i]);
   }
 }
 
@@ -54,6 +51,7 @@ Mechanism<S> nominal_mechanism(const Model& model) {
       m.sizes(static_cast<Eigen::Index>(k), i) = sizes[k];
     }
     m.contact_points.push_back(link.body.contact_points.cast<S>());
+    m.contact_clusters.emplace_back(4, model.point_clusters(static_cast<int>(i)).size());
   }
   for (Eigen::Index i = 0; i < motors; ++i) {
     const Motor& motor = model.motors()[static_cast<std::size_t>(i)];
@@ -65,7 +63,7 @@ Mechanism<S> nominal_mechanism(const Model& model) {
     m.contact_coefficients.col(i) = Eigen::Vector4d(c.kn, c.kt, c.mu, c.damping).cast<S>();
   }
   m.inertia.resize(static_cast<std::size_t>(links));
-  m.update_derived();
+  m.update_derived(model);
   return m;
 }
 

@@ -25,11 +25,12 @@ struct Mechanism {
   Eigen::Matrix<S, 4, Eigen::Dynamic> contact_coefficients;  ///< k_n, k_t, μ, k_d [4 x contacts]
   std::vector<Eigen::Matrix<S, 3, Eigen::Dynamic>> contact_points;  ///< per link [3 x points]
   Eigen::VectorXd contact_radius;  ///< per link: bound on |contact point|            [links]
-  Vector3<S> gravity;              ///< in the world frame, length/time²     [3]
-  std::vector<SpatialInertia<S>> inertia;  ///< per link: of the body, from the joint frame
+  std::vector<Eigen::Matrix4Xd> contact_clusters;  ///< per link: balls around them [4 x clusters]
+  Vector3<S> gravity;                              ///< in the world frame, length/time²     [3]
+  std::vector<SpatialInertia<S>> inertia;          ///< per link: of the body, from the joint frame
 
-  /// Recomputes `inertia` and `contact_radius` after what they follow from has changed.
-  void update_derived();
+  /// Recomputes inertia and the bounds on contact points after what they follow from has changed.
+  void update_derived(const Model& model);
 };
 
 /// The mechanism whose parameters are the model's own.

@@ -7,6 +7,7 @@
 
 #include "hbar/core/contact.h"
 #include "hbar/core/joint.h"
+#include "hbar/core/point_clusters.h"
 #include "hbar/core/shape.h"
 #include "hbar/core/tree.h"
 
@@ -109,6 +110,11 @@ class Model {
   [[nodiscard]] int link_count() const { return static_cast<int>(links_.size()); }
   [[nodiscard]] const Link& link(int i) const { return links_[static_cast<std::size_t>(i)]; }
 
+  /// The contact points of a link's body in groups.
+  [[nodiscard]] const PointClusters& point_clusters(int link) const {
+    return point_clusters_[static_cast<std::size_t>(link)];
+  }
+
   /// The last node of a link's joint: the one that carries its body.
   [[nodiscard]] int node_of_link(int link) const {
     return node_of_link_[static_cast<std::size_t>(link)];
@@ -144,6 +150,7 @@ class Model {
   Units units_ = Units::kMetreKilogram;
   Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
   std::vector<Link> links_;
+  std::vector<PointClusters> point_clusters_;  // per link
   std::vector<Motor> motors_;
   std::vector<EndEffector> end_effectors_;
   std::vector<Contact> contacts_;

@@ -189,6 +189,7 @@ int ModelBuilder::add_link(int parent, Joint joint, Body body, std::string name,
   const int index = model_.link_count();
   const int parent_node = parent == -1 ? -1 : model_.node_of_link(parent);
   model_.node_of_link_.push_back(model_.tree_.add_joint(joint.kind, parent_node, index));
+  model_.point_clusters_.push_back(cluster_points(body.contact_points));
   model_.links_.push_back(
       {std::move(name), parent, std::move(joint), std::move(body), design_mask});
   return index;

@@ -29,7 +29,12 @@ FrameTwists<S> frame_twists(const Model& model, const Mechanism<S>& mechanism,
       w[set[i].component] = p[i];
     }
   }
-  const Matrix3<S> J_w = right_jacobian(w);
+  Matrix3<S> J_w;
+  if (std::same_as<S, double> && w.isZero(0.0)) {
+    J_w.setIdentity();  // as it mostly is: the frame where the scene put it
+  } else {
+    J_w = right_jacobian(w);
+  }
   if (block.kind == ParameterKind::kJointTransform) {
     const Node& node = model.tree().node(first_node_of_link(model, block.owner));
     return {rest_frame(model, mechanism, motion, block.owner), motion.parent_of(node).R, J_w};
@@ -246,92 +251,99 @@ void body_frame_column(const StageResidual<S>& stage, int link, const Vector6<S>
       stage.motion(), [link](int other) { return other == link; }, D, by_frame.psi_dot, column);
 }
 
+/// Columns of one block, but for what contact parameters do to wrenches.
+template <Scalar S>
+void block_columns(const Mechanism<S>& mechanism, const ParameterSet& set, const VectorView<S>& p,
+                   const StageResidual<S>& stage, const ParameterBlock& block, double c,
+                   Eigen::Ref<MatrixX<S>> columns) {
+  const Model& model = stage.model();
+  const Motion<S>& motion = stage.motion();
+  const JointForces<S>& forces = stage.joint_forces();
+  const std::vector<int> rows = parameter_rows(model, block);
+  const auto each = [&](const auto& fill) {
+    for (int i = block.first; i < block.first + block.size; ++i) {
+      auto column = columns.col(i);
+      fill(i, column);
+      for (const int l : rows) {
+        column[l] *= c;
+      }
+    }
+  };
+  switch (block.kind) {
+    case ParameterKind::kJointTransform: {
+      const auto twists = frame_twists<S>(model, mechanism, motion, set, block, p);
+      const int first = first_node_of_link(model, block.owner);
+      each([&](int i, auto& column) {
+        joint_frame_column<S>(stage, first, twists(set[i].component), rows, column);
+      });
+      break;
+    }
+    case ParameterKind::kBodyTransform: {
+      const auto twists = frame_twists<S>(model, mechanism, motion, set, block, p);
+      each([&](int i, auto& column) {
+        body_frame_column<S>(stage, block.owner, twists(set[i].component), rows, column);
+      });
+      break;
+    }
+    case ParameterKind::kMass:
+    case ParameterKind::kInertia:
+    case ParameterKind::kSize: {
+      const auto wrenches = inertia_wrenches<S>(model, mechanism, motion, block.owner);
+      each([&](int i, auto& column) {
+        const Vector6<S> wrench =
+            inertial_wrench<S>(model, mechanism, wrenches, block, set[i].component, p[i]);
+        path_column<S>(stage, block.owner, wrench, rows, column);
+      });
+      break;
+    }
+    case ParameterKind::kContactPoint:
+    case ParameterKind::kContactScale:
+    case ParameterKind::kContactCoefficient:
+      each([&](int, auto& column) { column(rows).setZero(); });
+      break;
+    case ParameterKind::kStiffness:
+    case ParameterKind::kDamping: {
+      const VectorX<S>& by =
+          block.kind == ParameterKind::kStiffness ? forces.by_stiffness : forces.by_damping;
+      each([&](int, auto& column) {
+        for (const int l : rows) {
+          column[l] = -by[l];
+        }
+      });
+      break;
+    }
+    case ParameterKind::kMotorP:
+    case ParameterKind::kMotorD: {
+      const VectorX<S>& by = block.kind == ParameterKind::kMotorP ? forces.by_P : forces.by_D;
+      each([&](int, auto& column) {
+        for_each_drive(model, block.owner, [&](int k, int i) { column[k] = -by[i]; });
+      });
+      break;
+    }
+    case ParameterKind::kGravity:
+      each([&](int i, auto& column) {
+        for (const int l : rows) {
+          column[l] = -stage.dynamics().IJ(3 + set[i].component, l);
+        }
+      });
+      break;
+  }
+}
+
 }  // namespace
 
 template <Scalar S>
 void parameter_columns(const Mechanism<S>& mechanism, const ParameterSet& set,
                        const VectorView<S>& p, const StageResidual<S>& stage,
                        const StagePoint<S>& point, Eigen::Ref<MatrixX<S>> columns) {
-  const Model& model = stage.model();
-  const Motion<S>& motion = stage.motion();
-  const JointForces<S>& forces = stage.joint_forces();
+  const double c = point.c();
   for (const ParameterBlock& block : set.blocks()) {
-    const std::vector<int> rows = parameter_rows(model, block);
-    const auto each = [&](const auto& fill) {
-      for (int i = block.first; i < block.first + block.size; ++i) {
-        auto column = columns.col(i);
-        fill(set[i].component, column);
-        for (const int l : rows) {
-          column[l] *= point.c();
-        }
-      }
-    };
-    switch (block.kind) {
-      case ParameterKind::kJointTransform: {
-        const auto twists = frame_twists<S>(model, mechanism, motion, set, block, p);
-        const int first = first_node_of_link(model, block.owner);
-        each([&](int k, auto& column) {
-          joint_frame_column<S>(stage, first, twists(k), rows, column);
-        });
-        break;
-      }
-      case ParameterKind::kBodyTransform: {
-        const auto twists = frame_twists<S>(model, mechanism, motion, set, block, p);
-        each([&](int k, auto& column) {
-          body_frame_column<S>(stage, block.owner, twists(k), rows, column);
-        });
-        break;
-      }
-      case ParameterKind::kMass:
-      case ParameterKind::kInertia:
-      case ParameterKind::kSize: {
-        const auto wrenches = inertia_wrenches<S>(model, mechanism, motion, block.owner);
-        for (int i = block.first; i < block.first + block.size; ++i) {
-          const Vector6<S> wrench =
-              inertial_wrench<S>(model, mechanism, wrenches, block, set[i].component, p[i]);
-          path_column<S>(stage, block.owner, point.c() * wrench, rows, columns.col(i));
-        }
-        break;
-      }
-      case ParameterKind::kContactPoint:
-      case ParameterKind::kContactScale:
-      case ParameterKind::kContactCoefficient:
-        for (const int l : rows) {
-          columns.row(l).segment(block.first, block.size).setZero();
-        }
-        break;  // by for_each_contact_change, below
-      case ParameterKind::kStiffness:
-      case ParameterKind::kDamping: {
-        const VectorX<S>& by =
-            block.kind == ParameterKind::kStiffness ? forces.by_stiffness : forces.by_damping;
-        each([&](int, auto& column) {
-          for (const int l : rows) {
-            column[l] = -by[l];
-          }
-        });
-        break;
-      }
-      case ParameterKind::kMotorP:
-      case ParameterKind::kMotorD: {
-        const VectorX<S>& by = block.kind == ParameterKind::kMotorP ? forces.by_P : forces.by_D;
-        each([&](int, auto& column) {
-          for_each_drive(model, block.owner, [&](int c, int i) { column[c] = -by[i]; });
-        });
-        break;
-      }
-      case ParameterKind::kGravity:
-        each([&](int k, auto& column) {
-          for (const int l : rows) {
-            column[l] = -stage.dynamics().IJ(3 + k, l);
-          }
-        });
-        break;
-    }
+    block_columns<S>(mechanism, set, p, stage, block, c, columns);
   }
   for_each_contact_change(
       stage.contacts(), mechanism, set, [&](int i, int contact, const PairWrenches<S>& change) {
-        stage.contacts().add_change(
-            motion, contact, {point.c() * change.on_a, point.c() * change.on_b}, columns.col(i));
+        stage.contacts().add_change(stage.motion(), contact, {c * change.on_a, c * change.on_b},
+                                    columns.col(i));
       });
 }
 

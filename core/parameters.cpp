@@ -314,7 +314,7 @@ void apply_parameters(const Model& model, const ParameterSet& set, const VectorV
   }
   require_physical(model, mechanism.mass.unaryExpr([](const S& m) { return value_of(m); }),
                    mechanism.moments.unaryExpr([](const S& m) { return value_of(m); }));
-  mechanism.update_derived();
+  mechanism.update_derived(model);
 }
 
 template void apply_parameters(const Model&, const ParameterSet&, const VectorView<double>&,

@@ -206,30 +206,6 @@ SurfaceDistance<S>::SurfaceDistance(const ContactSurface& surface, const Shape& 
 }
 
 template <Scalar S>
-double SurfaceDistance<S>::lower_bound(const Eigen::Vector3d& x) const {
-  switch (kind_) {
-    case Kind::kPlane:
-      return normal_.dot(x - point_);
-    case Kind::kCuboid:
-      return std::max({std::abs(x[0]) - 0.5 * values_[0], std::abs(x[1]) - 0.5 * values_[1],
-                       std::abs(x[2]) - 0.5 * values_[2]});
-    case Kind::kSphere:
-      return x.norm() - values_[0];
-    case Kind::kCylinder:
-    case Kind::kTube: {
-      const double side = std::sqrt(x[0] * x[0] + x[1] * x[1]) - values_[0];
-      const double end = std::abs(x[2]) - 0.5 * values_[1];
-      return kind_ == Kind::kTube && end <= 0.0 ? side : std::max(side, end);
-    }
-    case Kind::kCapsule:
-      return from_segment<double>(x, 0.5 * values_[1]).norm() - values_[0];
-    case Kind::kField:
-      return field_->lower_bound(x);
-  }
-  return 0.0;
-}
-
-template <Scalar S>
 SurfaceSample<S> SurfaceDistance<S>::sample(const Vector3<S>& x) const {
   using std::abs;
   switch (kind_) {

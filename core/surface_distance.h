@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "hbar/core/contact.h"
 #include "hbar/core/shape.h"
 
@@ -58,5 +60,32 @@ class SurfaceDistance {
   Eigen::Vector3d normal_ = Eigen::Vector3d::UnitZ();
   const DistanceField* field_ = nullptr;
 };
+
+// In the header: it is asked for every point and every cluster of them.
+template <Scalar S>
+inline double SurfaceDistance<S>::lower_bound(const Eigen::Vector3d& x) const {
+  switch (kind_) {
+    case Kind::kPlane:
+      return normal_.dot(x - point_);
+    case Kind::kCuboid:
+      return std::max({std::abs(x[0]) - 0.5 * values_[0], std::abs(x[1]) - 0.5 * values_[1],
+                       std::abs(x[2]) - 0.5 * values_[2]});
+    case Kind::kSphere:
+      return x.norm() - values_[0];
+    case Kind::kCylinder:
+    case Kind::kTube: {
+      const double side = std::sqrt(x[0] * x[0] + x[1] * x[1]) - values_[0];
+      const double end = std::abs(x[2]) - 0.5 * values_[1];
+      return kind_ == Kind::kTube && end <= 0.0 ? side : std::max(side, end);
+    }
+    case Kind::kCapsule: {
+      const double beyond = std::max(0.0, std::abs(x[2]) - 0.5 * values_[1]);
+      return std::sqrt(x[0] * x[0] + x[1] * x[1] + beyond * beyond) - values_[0];
+    }
+    case Kind::kField:
+      return field_->lower_bound(x);
+  }
+  return 0.0;
+}
 
 }  // namespace hbar

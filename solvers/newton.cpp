@@ -25,6 +25,8 @@ std::string_view describe(NewtonStatus status) {
       return "singular Jacobian";
     case NewtonStatus::kNotFinite:
       return "residual not finite";
+    case NewtonStatus::kStrayed:
+      return "converged to a root far from the prediction";
   }
   return "";
 }

@@ -37,7 +37,8 @@ enum class NewtonStatus {
   kIterationLimit,  ///< max_iter corrections did not suffice
   kLineSearch,      ///< no acceptable step after max_ls shortenings
   kSingular,        ///< the Jacobian could not be solved with
-  kNotFinite        ///< g is not finite at the start
+  kNotFinite,       ///< g is not finite at the start
+  kStrayed          ///< converged, but the caller found the solution implausible
 };
 
 /// Why Newton's method stopped, in words.

@@ -44,6 +44,8 @@ struct Task {
   double rest_weight = 0.0;        ///< of ½ ‖q̇‖² at the end
   Eigen::VectorXd control_scale;   ///< typical size of a change                      [controls]
   Eigen::VectorXd control_bound;   ///< |control| ≤                                   [controls]
+  /// Relative change of the objective at which five iterations in a row end the last stage.
+  double enough = 1e-3;
   std::vector<double> contact_scales = {1.0};  ///< continuation: s of (13), (14), last is 1
   std::vector<std::string> scaled_bodies;      ///< bodies whose s that is
 };

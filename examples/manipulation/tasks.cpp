@@ -51,6 +51,7 @@ Task flip_box() {
   task.guess = {{0.0, vector({0.0, 0.0, 0.8, -1.6, 0.8})},
                 {0.6, vector({0.0, 0.12, 0.8, -1.6, 0.8})},
                 {1.0, vector({0.0, 0.12, 0.8, -1.6, 0.8})}};
+  task.enough = 2e-3;
   task.goals = {{"box.a", -kQuarterTurn, 0.01, 100.0}};
   task.phalanges = finger("");
   task.velocity_weight = 1.0;
@@ -81,6 +82,7 @@ Task assemble() {
   task.rest_weight = 0.1;
   task.control_scale = vector({0.02, 0.02, 0.1, 0.1, 0.1, 0.02, 0.02, 0.1, 0.1, 0.1});
   task.control_bound = vector({0.3, 0.3, 2.0, 2.0, 2.0, 0.3, 0.3, 2.0, 2.0, 2.0});
+  task.enough = 1e-2;
   task.contact_scales = {0.01, 0.1, 1.0};
   task.scaled_bodies = {"left_tip", "right_tip"};
   return task;

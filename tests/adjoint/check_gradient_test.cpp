@@ -19,7 +19,7 @@ TEST_P(CheckOfEveryIntegrator, PassesInEveryClass) {
   const GradientCheckReport report = check_gradient(problem);
   EXPECT_TRUE(report.passed()) << report.table();
   // Nine kinds of parameter, controls, initial position and velocity.
-  EXPECT_EQ(report.rows.size(), 12U) << report.table();
+  EXPECT_EQ(report.rows.size(), 13U) << report.table();
 }
 
 TEST_P(CheckOfEveryIntegrator, PassesAcrossAChangeOfChart) {

@@ -2,6 +2,7 @@
 //
 //   hbar_benchmarks                  every benchmark on its own; Google Benchmark's options apply
 //   hbar_benchmarks --ratios [N]     tables of ratios, medians over N repetitions (default 15)
+//   hbar_benchmarks --grasp [N]      the table of the grasp with contact alone
 //   hbar_benchmarks --repeat WORK MODEL N   one work N times, for a profiler
 
 #include <benchmark/benchmark.h>
@@ -90,6 +91,10 @@ int run(int argc, char** argv) {
   const std::string first = argc > 1 ? arguments[1] : "";
   if (first == "--ratios") {
     write_ratios(argc > 2 ? std::atoi(arguments[2]) : 15, std::cout);
+    return 0;
+  }
+  if (first == "--grasp") {
+    write_grasp_ratios(argc > 2 ? std::atoi(arguments[2]) : 15, std::cout);
     return 0;
   }
   if (first == "--repeat" && argc == 5) {

@@ -6,6 +6,7 @@
 #include <iomanip>
 #include <ostream>
 
+#include "tests/benchmarks/grasp.h"
 #include "tests/benchmarks/workloads.h"
 
 namespace hbar::benchmarks {
@@ -138,6 +139,39 @@ void write_difference_ratios(int repetitions, std::ostream& out) {
   }
 }
 
+/// What contact costs: evaluations with it less those without, times how often each is made.
+void write_grasp(int repetitions, std::ostream& out) {
+  out << "\nA hand of five fingers holding a free cube, " << kSteps
+      << " steps (µs per step; targets: contact ≤ 50 % of a step, gradient ≤ 2 forward)\n\n"
+      << "| integrator | points | touching, mean | most | parameters | corrections | forward | "
+         "contact in it | sweep | contact in it | (forward + sweep) / forward | slip, mm |\n"
+      << "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  for (const char* integrator : {"bdf1", "bdf2"}) {
+    GraspWork work(integrator);
+    const Paired paired(
+        {[&] { work.forward_alone(); }, [&] { work.sweep(); }, [&] { work.forward_and_sweep(); },
+         [&] { work.newton_matrix(); }, [&] { work.newton_matrix_without(); },
+         [&] { work.residual(); }, [&] { work.residual_without(); }, [&] { work.pull_back(); },
+         [&] { work.pull_back_without(); }},
+        repetitions);
+    const auto contact = [&](std::size_t with) {
+      return paired.time(with, 1.0) - paired.time(with + 1, 1.0);
+    };
+    // Newton evaluates a residual after every correction but a stage's last.
+    const double in_forward = contact(3) * work.factorizations() +
+                              contact(5) * (work.newton_iterations() - work.stages());
+    const double in_sweep = contact(7) * work.stages();
+    out << "| " << integrator << " | " << work.declared_points() << " | "
+        << work.mean_active_points() << " | " << work.most_active_points() << " | "
+        << work.parameter_count() << " | " << static_cast<double>(work.newton_iterations()) / kSteps
+        << " | " << paired.time(0, 1e-6) / kSteps << " | "
+        << 100.0 * in_forward / paired.time(0, 1.0) << " % | " << paired.time(1, 1e-6) / kSteps
+        << " | " << 100.0 * in_sweep / paired.time(1, 1.0) << " % | " << paired.ratio(2, 0) << " | "
+        << 1e3 * work.slip() << " |\n"
+        << std::flush;
+  }
+}
+
 }  // namespace
 
 void write_ratios(int repetitions, std::ostream& out) {
@@ -146,6 +180,12 @@ void write_ratios(int repetitions, std::ostream& out) {
   write_gradient_ratios("bdf1", repetitions, out);
   write_gradient_ratios("bdf2", repetitions, out);
   write_difference_ratios(repetitions, out);
+  write_grasp(repetitions, out);
+}
+
+void write_grasp_ratios(int repetitions, std::ostream& out) {
+  out << std::fixed << std::setprecision(2);
+  write_grasp(repetitions, out);
 }
 
 }  // namespace hbar::benchmarks

@@ -10,4 +10,7 @@ namespace hbar::benchmarks {
 /// @param repetitions  of each measurement; the median is taken over them
 void write_ratios(int repetitions, std::ostream& out);
 
+/// The last of these tables alone: a grasp, and contact's share of its cost.
+void write_grasp_ratios(int repetitions, std::ostream& out);
+
 }  // namespace hbar::benchmarks

@@ -62,7 +62,7 @@ TEST(Mechanism, UpdatesItsInertiasFromMassMomentsAndPlacement) {
   mechanism.mass[2] *= 1.5;
   mechanism.moments.col(3) *= 0.7;
   mechanism.X_JB[4] = testing::random_pose(random);
-  mechanism.update_derived();
+  mechanism.update_derived(model);
   for (std::size_t i = 0; i < mechanism.inertia.size(); ++i) {
     expect_inertia(mechanism, i);
   }

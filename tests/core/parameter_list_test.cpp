@@ -102,9 +102,9 @@ TEST(ParameterList, ListsPointsAndScalesThatAMaskAsksForThoughNothingTouches) {
   const Names points = names_of(list, ParameterKind::kContactPoint);
   EXPECT_EQ(points.size(), 9U);
   EXPECT_EQ(points.back(), "body.pill.contact.0.z");
-  EXPECT_EQ(names_of(list, ParameterKind::kContactScale),
-            (Names{"body.box.contact_scale", "body.can.contact_scale", "body.ball.contact_scale",
-                   "body.pill.contact_scale"}));
+  EXPECT_EQ(
+      names_of(list, ParameterKind::kContactScale),
+      (Names{"body.box.contact_scale", "body.ball.contact_scale", "body.pill.contact_scale"}));
 }
 
 TEST(ParameterList, IsOrderedByKindOwnerAndComponentWithoutRepeats) {

@@ -22,14 +22,13 @@ LIBRARIES = {
     "mujoco": r"mujoco/",
     "posix": r"(sys/\w+|unistd|fcntl|signal|pthread|dlfcn|poll|stdlib|stdio)\.h$",
 }
-EVERY_FLOOR = ("core", "scene", "solvers", "contact", "adjoint")
+EVERY_FLOOR = ("core", "scene", "solvers", "adjoint")
 SHARED = ("core/error.h", "core/scalar.h")  # what a floor without mechanics may know of core
 # floor: (floors or single headers it may include, third-party libraries)
 FLOORS = {
     "core": (("core",), ("eigen",)),
     "scene": (("core", "scene"), ("eigen", "tinyxml2", "posix")),
     "solvers": (("solvers", *SHARED), ("eigen", "suitesparse", "lapack", "ipopt")),
-    "contact": (("core", "scene", "contact"), ("eigen",)),
     "adjoint": (("core", "solvers", "adjoint"), ("eigen",)),
     "examples": (EVERY_FLOOR, ("eigen", "cli11", "json", "fmt", "posix")),
     "tests": (EVERY_FLOOR, tuple(LIBRARIES)),

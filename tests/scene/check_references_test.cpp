@@ -28,7 +28,8 @@ TEST(References, ToBodiesThatHavePointsAreTaken) {
     return "<robot><link name=\"f\"><joint type=\"fixed\"/>" + body + "</link></robot>";
   };
   for (const std::string body :
-       {"<body type=\"sphere\" radius=\"1\" general_contact_resolution=\"2 3\"/>",
+       {"<body type=\"sphere\" radius=\"1\"/>",
+        "<body type=\"sphere\" radius=\"1\" general_contact_resolution=\"2 3\"/>",
         "<body type=\"mesh\" filename=\"m.obj\"/>",
         "<body type=\"abstract\" mass=\"1\" inertia=\"1 1 1\" contacts=\"c.txt\"/>",
         "<body type=\"abstract\" mass=\"1\" inertia=\"1 1 1\"><collision "
@@ -62,9 +63,11 @@ const std::vector<BadScene> kRefused = {
      "<body> contacts or a <collision>"},
     {"contact without points of a ball",
      scene_with_section("<contact><general_primitive_contact general_body=\"b\" "
-                        "primitive_body=\"d\"/></contact>"),
-     "bad.xml:2: <general_primitive_contact general_body=\"b\">: this ball has no contact points; "
-     "give its <body> general_contact_resolution, or make it the primitive_body"},
+                        "primitive_body=\"m\"/></contact><robot><link name=\"m\"><joint "
+                        "type=\"fixed\"/><body type=\"mesh\" filename=\"m.obj\"/></link></robot>"),
+     "bad.xml:2: <general_primitive_contact general_body=\"b\">: this ball has no contact points, "
+     "which a mesh needs; give its <body> general_contact_resolution, or make it the "
+     "primitive_body"},
     {"contact with an abstract body",
      scene_with_section("<contact><general_primitive_contact general_body=\"d\" "
                         "primitive_body=\"f\"/></contact>" +

@@ -8,6 +8,8 @@
 #include "hbar/adjoint/check_gradient.h"
 #include "hbar/adjoint/objective_terms.h"
 #include "hbar/core/rotation.h"
+#include "hbar/scene/build_model.h"
+#include "hbar/scene/read_xml.h"
 #include "tests/system/contact_scenes.h"
 
 namespace hbar {
@@ -151,6 +153,54 @@ TEST(StiffContact, HasAGradientThroughAHalvedStep) {
 INSTANTIATE_TEST_SUITE_P(All, StiffContactOfEveryIntegrator,
                          ::testing::Values("bdf1", "sdirk2", "bdf2"),
                          [](const auto& run) { return run.param; });
+
+/// A torque-driven finger that lashes a box: at these steps BDF2 has a second root in which the
+/// finger has turned through the box several times.
+TEST(StiffContact, NeverTakesARootFarFromThePrediction) {
+  const char* const text = R"(<redmax model="lash">
+  <option gravity="0 0 -981" unit="cm-g"/>
+  <ground pos="0 0 0" normal="0 0 1"/>
+  <robot>
+    <link name="box">
+      <joint name="free" type="free3d-exp"/>
+      <body name="box" type="cuboid" size="4 4 2" general_contact_resolution="2 2 2"/>
+    </link>
+    <link name="upper">
+      <joint name="j1" type="revolute" axis="0 1 0" pos="-6 0 8" damping="1000"/>
+      <body name="upper" type="capsule" radius="0.5" length="5" pos="2.5 0 0" quat="1 0 1 0"/>
+      <link name="lower">
+        <joint name="j2" type="revolute" axis="0 1 0" pos="5 0 0" damping="1000"/>
+        <body name="lower" type="capsule" radius="0.5" length="4" pos="2 0 0" quat="1 0 1 0"/>
+      </link>
+    </link>
+  </robot>
+  <actuator>
+    <motor joint="j1" ctrl="force" ctrl_range="-200000 200000"/>
+    <motor joint="j2" ctrl="force" ctrl_range="-200000 200000"/>
+  </actuator>
+  <contact>
+    <ground_contact law="document" body="box" kn="1000000" kt="10000" mu="1.5" damping="10000"/>
+    <general_primitive_contact general_body="lower" primitive_body="box" kn="1000000" kt="10000"
+                               mu="1.5" damping="10000"/>
+  </contact>
+</redmax>)";
+  const Model model = scene::build_model(scene::read_scene_text(text, "lash.xml"));
+  for (const char* integrator : {"bdf1", "bdf2", "sdirk2"}) {
+    SimulationOptions options;
+    options.integrator = integrator;
+    options.h = kStep;
+    options.steps = kSteps;
+    Simulator simulator(model, {}, options);
+    Inputs inputs = simulator.nominal_inputs();
+    inputs.q0 << 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.7;
+    for (int k = 0; k < kSteps; ++k) {
+      inputs.u.col(k) << 0.5 + 0.3 * std::sin(0.05 * k), 0.5 * std::cos(0.07 * k);
+    }
+    const Trajectory trajectory = simulator.rollout(inputs).trajectory();
+    // The joints turn at some 100 rad/s at most; through the box it would be 1e4 and more.
+    EXPECT_LT(trajectory.qdot.cwiseAbs().maxCoeff(), 1000.0) << integrator;
+  }
+}
 
 }  // namespace
 }  // namespace hbar

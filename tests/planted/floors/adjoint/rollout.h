@@ -5,4 +5,4 @@
 // planted: floor
 #include "hbar/scene/description.h"
 // planted: floor
-#include "hbar/contact/contact_force.h"
+#include "hbar/scene/description.h"

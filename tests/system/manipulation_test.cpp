@@ -1,0 +1,80 @@
+// The manipulation examples: what their programs do, without the printing.
+
+#include <gtest/gtest.h>
+
+#include "examples/manipulation/run_task.h"
+#include "examples/manipulation/tasks.h"
+#include "hbar/core/error.h"
+
+namespace hbar::manipulation {
+namespace {
+
+TEST(Manipulation, TurnsTheBoxByAQuarter) {
+  const Task task = rotate_box();
+  const TaskResult result = solve_task(task, {});
+  EXPECT_TRUE(result.last.converged()) << result.last.message;
+  EXPECT_LE(result.iterations, 100);
+  EXPECT_GT(result.start_errors[0], 0.3) << "the first guess does not reach the goal";
+  EXPECT_TRUE(result.reached(task)) << result.errors.transpose();
+  EXPECT_LT(result.last.objective, 0.1 * result.start_objective);
+}
+
+TEST(Manipulation, FlipsTheBoxOverItsEdge) {
+  const Task task = flip_box();
+  const TaskResult result = solve_task(task, {});
+  EXPECT_TRUE(result.last.converged()) << result.last.message;
+  EXPECT_LE(result.iterations, 100);
+  EXPECT_GT(result.start_errors[0], 0.3) << "from the first guess the box falls back";
+  EXPECT_TRUE(result.reached(task)) << result.errors.transpose();
+  // The box lies still on its side: its height is what it was.
+  const Eigen::VectorXd last = result.values.q.rightCols<1>();
+  EXPECT_NEAR(last[7], 0.0, 1e-3);
+  EXPECT_LT(result.values.qdot.rightCols<1>().segment<3>(8).norm(), 0.1);
+}
+
+TEST(Manipulation, BringsTwoBoxesTogetherInPart) {
+  Task task = assemble();
+  TaskOptions options;
+  options.max_iterations = 25;
+  const TaskResult result = solve_task(task, options);
+  EXPECT_EQ(result.iterations, 25);
+  EXPECT_LT(result.last.objective, 0.1 * result.start_objective);
+}
+
+/// The gradient that Ipopt gets, where the first guess touches.
+TEST(Manipulation, HasTheGradientThatDifferencesGive) {
+  for (Task task : {rotate_box(), flip_box(), assemble()}) {
+    const auto problem = make_problem(task, 1.0);
+    const Eigen::VectorXd x = problem->variables().start;
+    Eigen::VectorXd gradient(x.size());
+    problem->objective_gradient(x, gradient);
+    // Along the gradient in the variables' own sizes; a kink costs a share of the step.
+    const Eigen::VectorXd d = gradient.cwiseProduct(problem->variables().scale.cwiseAbs2());
+    const double slope = gradient.dot(d);
+    const double e = 1e-5 / (d.cwiseQuotient(problem->variables().scale)).norm();
+    const double difference =
+        (problem->objective(x + e * d) - problem->objective(x - e * d)) / (2.0 * e);
+    EXPECT_NEAR(difference / slope, 1.0, 1e-3) << task.name;
+  }
+}
+
+TEST(Manipulation, MapsLengthsAffinely) {
+  const Task task = rotate_box();
+  const auto problem = make_problem(task, 1.0);
+  const DesignMap& map = *problem->parts().map;
+  EXPECT_LT(check_design_map(map, map.variables().start).gap, 1e-9);
+  const Eigen::VectorXd p = map.parameters(map.variables().start);
+  EXPECT_LT((p - problem->parts().simulator.parameters().nominal()).norm(), 1e-15);
+}
+
+TEST(Manipulation, RefusesATaskOfAnotherScene) {
+  Task task = rotate_box();
+  task.goals[0].coordinate = "lid.c";
+  EXPECT_THROW(static_cast<void>(make_problem(task, 1.0)), InvalidInput);
+  task = rotate_box();
+  task.phalanges[0].body = "box";
+  EXPECT_THROW(static_cast<void>(make_problem(task, 1.0)), InvalidInput);
+}
+
+}  // namespace
+}  // namespace hbar::manipulation
