@@ -12,7 +12,7 @@ struct GradientCheckOptions {
   int directions = 3;              ///< random directions per class
   unsigned seed = 1;               ///< of the directions
   double difference_bound = 1e-6;  ///< on the gap to central differences
-  double slope_tolerance = 0.1;    ///< on the remainder's slope about 2
+  double slope_tolerance = 0.1;    ///< how far the remainder's slope may fall short of 2
   double dot_bound = 1e-12;        ///< on the adjoint-tangent gap
 };
 
@@ -21,7 +21,8 @@ struct GradientCheckRow {
   std::string name;             ///< a parameter kind, "controls", "initial position", …
   int size = 0;                 ///< scalars in the class
   double difference_gap = 0.0;  ///< worst |central difference − g·d| / (‖g‖‖d‖), best step of many
-  double taylor_slope = 0.0;  ///< of log |Ψ(x+εd) − Ψ(x) − ε g·d| over log ε; worst direction
+  double taylor_slope =
+      0.0;  ///< of log |Ψ(x+εd) − Ψ(x) − ε g·d| over log ε; least of all directions
   bool remainder_vanishes = false;  ///< Ψ is affine along the class to rounding: no slope
   double dot_gap = 0.0;  ///< worst |g·d − ∂Ψ·δ(q̄, q̇̄, v̄, u, p)| / (‖g‖‖d‖)
   bool passed = false;

@@ -96,8 +96,7 @@ class Lister {
 
   void contact_scale(int link) {
     const Link& owner = model_.link(link);
-    const bool can_touch =
-        owner.body.contact_points.cols() > 0 || std::holds_alternative<Sphere>(owner.body.shape);
+    const bool can_touch = owner.body.contact_points.cols() > 0;
     if (touches(link) || (can_touch && (owner.design_mask & kMaskContactScale) != 0)) {
       add(ParameterKind::kContactScale, link, 0, concat("body.", owner.body.name, ".contact_scale"),
           "1", 1.0, 0.0, kInfinity);

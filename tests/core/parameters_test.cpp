@@ -68,7 +68,6 @@ TEST(ParameterSet, ListsEverythingByTypeThenByLinkInFileOrder) {
                      "body.shin.inertia.y", "body.shin.inertia.z"},
                     {"joint.hip.stiffness", "joint.hip.damping", "joint.knee.stiffness",
                      "joint.knee.damping"},
-                    {"body.shin.contact_scale"},
                     {"motor.knee.P", "motor.knee.D"},
                     {"gravity.x", "gravity.y", "gravity.z"},
                     {"body.thigh.size.x", "body.thigh.size.y", "body.thigh.size.z",
@@ -143,8 +142,7 @@ TEST(ParameterSet, SelectsByMask) {
   EXPECT_EQ(names_of(ParameterSet::masked(leg())),
             joined({frame_names("body.thigh"),
                     {"body.shin.mass", "body.shin.inertia.x", "body.shin.inertia.y",
-                     "body.shin.inertia.z", "joint.knee.stiffness", "joint.knee.damping",
-                     "body.shin.contact_scale"}}));
+                     "body.shin.inertia.z", "joint.knee.stiffness", "joint.knee.damping"}}));
 }
 
 TEST(ParameterSet, SelectsByNamesAndPrefixesInTheOrderOfTheRegistry) {

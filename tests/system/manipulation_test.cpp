@@ -32,12 +32,14 @@ TEST(Manipulation, FlipsTheBoxOverItsEdge) {
   EXPECT_LT(result.values.qdot.rightCols<1>().segment<3>(8).norm(), 0.1);
 }
 
+/// The first stage of the continuation, with the softest fingertips.
 TEST(Manipulation, BringsTwoBoxesTogetherInPart) {
   Task task = assemble();
+  task.contact_scales = {task.contact_scales.front()};
   TaskOptions options;
-  options.max_iterations = 25;
+  options.max_iterations = 30;
   const TaskResult result = solve_task(task, options);
-  EXPECT_EQ(result.iterations, 25);
+  EXPECT_LE(result.iterations, 30);
   EXPECT_LT(result.last.objective, 0.1 * result.start_objective);
 }
 

@@ -90,7 +90,7 @@ TEST(Robustness, AFailureSaysWhereWhyAndWhatToTry) {
              " (tol 1e-09), largest correction in coordinate '",
              simulator.model().coordinate_name(report.last_newton.worst),
              "', smallest time step tried 0.01; try a smaller time step, softer springs, "
-             "limits or motor gains, or a larger Newton tolerance"));
+             "limits, contacts or motor gains, or a larger Newton tolerance"));
 }
 
 TEST(Robustness, AFailureKeepsWhatWasReachedAndHandsOutNoTrajectory) {
