@@ -85,5 +85,14 @@ function(hbar_add_floor name)
   target_include_directories(hbar_${name} PUBLIC
     $<BUILD_INTERFACE:${HBAR_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(hbar_${name} PRIVATE $<BUILD_INTERFACE:hbar_flags>)
+  # Eigen takes a third of most files' compilation; it is read once.
+  if(HBAR_PRECOMPILE_HEADERS AND name MATCHES "^(core|scene|solvers|adjoint)$")
+    if(name STREQUAL "core")
+      target_precompile_headers(hbar_core PRIVATE <Eigen/Dense> <functional> <memory> <string>
+                                <variant> <vector>)
+    else()
+      target_precompile_headers(hbar_${name} REUSE_FROM hbar_core)
+    endif()
+  endif()
   hbar_install_target(hbar_${name})
 endfunction()

@@ -130,7 +130,7 @@ TaskResult solve_task(const Task& task, const TaskOptions& options) {
       out.start_objective = out.problem->objective(out.problem->variables().start);
     }
     // Only the last stage is worth the last digits.
-    const double enough = scale == task.contact_scales.back() ? task.enough : 4e-2;
+    const double enough = scale == task.contact_scales.back() ? task.enough : 6e-2;
     out.last = solvers::solve_with_ipopt(
         *out.problem, ipopt_options(options, options.max_iterations - out.iterations, enough));
     out.iterations += out.last.iterations;

@@ -29,7 +29,7 @@ struct TaskResult {
 
 /// Solves a task with Ipopt (limited-memory BFGS), contact scale by contact scale, each from the
 /// last one's result. A stage ends when the optimality error is small, or when five iterations in a
-/// row changed the objective by less than task.enough (4 % before the last stage).
+/// row changed the objective by less than task.enough (6 % before the last stage).
 [[nodiscard]] TaskResult solve_task(const Task& task, const TaskOptions& options);
 
 /// A program: command line, progress, summary, and result.json, trajectory.csv, iterations.csv.
