@@ -13,6 +13,7 @@ namespace hbar::example {
 namespace {
 
 std::atomic<bool> stop = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
 
 extern "C" void handle_interrupt(int) {
   if (stop.exchange(true)) {
@@ -23,6 +24,8 @@ extern "C" void handle_interrupt(int) {
 }  // namespace
 
 void prepare_process() {
+  // A file opened later never gets the number of a standard stream. Standard output is taken by a
+  // descriptor that cannot be written, so that what is lost is noticed.
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(descriptor, F_GETFD) < 0) {
       static_cast<void>(::open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY));

@@ -1,25 +1,13 @@
 #include "process.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <system_error>
 
 namespace hbar::tool {
 namespace {
-
-std::atomic<bool> stop = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
-
-extern "C" void handle_interrupt(int) {
-  if (stop.exchange(true)) {
-    ::_exit(static_cast<int>(ExitCode::kInterrupted));
-  }
-}
 
 /// 0, or the system's error code.
 int write_all(int descriptor, std::string_view text) noexcept {
@@ -37,23 +25,6 @@ int write_all(int descriptor, std::string_view text) noexcept {
 }
 
 }  // namespace
-
-void prepare_process() {
-  // A file opened later never gets the number of a standard stream. Standard output is taken by a
-  // descriptor that cannot be written, so that what is lost is noticed.
-  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (::fcntl(descriptor, F_GETFD) < 0) {
-      static_cast<void>(::open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY));
-    }
-  }
-  ::signal(SIGPIPE, SIG_IGN);
-  struct sigaction action = {};
-  action.sa_handler = handle_interrupt;
-  action.sa_flags = SA_RESTART;
-  ::sigaction(SIGINT, &action, nullptr);
-}
-
-const std::atomic<bool>& stop_flag() { return stop; }
 
 void write_stdout(std::string_view text) {
   const int code = write_all(STDOUT_FILENO, text);

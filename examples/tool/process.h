@@ -1,9 +1,10 @@
 #pragma once
 
-#include <atomic>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "examples/common/process.h"
 
 namespace hbar::tool {
 
@@ -29,12 +30,8 @@ class ToolError : public std::runtime_error {
   ExitCode code_;
 };
 
-/// Makes the process ready: closed standard streams cannot be taken for files, a closed pipe is an
-/// error like others, and the first SIGINT sets stop_flag(); the second ends the process at once.
-void prepare_process();
-
-/// Set by the first SIGINT.
-[[nodiscard]] const std::atomic<bool>& stop_flag();
+using example::prepare_process;
+using example::stop_flag;
 
 /// Writes to standard output.
 /// @throws ToolError (kInputOutput) if that fails, without a message if the reader has gone
