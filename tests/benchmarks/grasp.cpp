@@ -228,20 +228,10 @@ int GraspWork::stages() const { return work_->trajectory.timeline.stage_count() 
 int GraspWork::parameter_count() const { return work_->simulator.parameters().size(); }
 
 int GraspWork::newton_iterations() const {
-  int sum = 0;
-  for (const solvers::NewtonReport& report : work_->trajectory.newton) {
-    sum += report.iterations;
-  }
-  return sum;
+  return benchmarks::newton_iterations(work_->trajectory);
 }
 
-int GraspWork::factorizations() const {
-  int sum = 0;
-  for (const solvers::NewtonReport& report : work_->trajectory.newton) {
-    sum += report.factorizations;
-  }
-  return sum;
-}
+int GraspWork::factorizations() const { return benchmarks::factorizations(work_->trajectory); }
 
 int GraspWork::declared_points() const {
   Eigen::Index count = 0;

@@ -142,20 +142,24 @@ void RolloutWork::mujoco_rollout_with_A_B() {
   }
 }
 
-int RolloutWork::newton_iterations() const {
+int newton_iterations(const Trajectory& trajectory) {
   int sum = 0;
-  for (const solvers::NewtonReport& report : trajectory_.newton) {
+  for (const solvers::NewtonReport& report : trajectory.newton) {
     sum += report.iterations;
   }
   return sum;
 }
 
-int RolloutWork::factorizations() const {
+int factorizations(const Trajectory& trajectory) {
   int sum = 0;
-  for (const solvers::NewtonReport& report : trajectory_.newton) {
+  for (const solvers::NewtonReport& report : trajectory.newton) {
     sum += report.factorizations;
   }
   return sum;
 }
+
+int RolloutWork::newton_iterations() const { return benchmarks::newton_iterations(trajectory_); }
+
+int RolloutWork::factorizations() const { return benchmarks::factorizations(trajectory_); }
 
 }  // namespace hbar::benchmarks

@@ -8,6 +8,10 @@ namespace hbar::benchmarks {
 inline constexpr double kStep = 0.005;  ///< s
 inline constexpr int kSteps = 200;
 
+/// Corrections, and Jacobians evaluated, of all stages of a trajectory.
+[[nodiscard]] int newton_iterations(const Trajectory& trajectory);
+[[nodiscard]] int factorizations(const Trajectory& trajectory);
+
 /// One stage of a step against one step of MuJoCo's, at the same states in turn.
 class StageWork {
  public:

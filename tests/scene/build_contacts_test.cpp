@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "hbar/scene/build_model.h"
+#include "tests/scene/build_refusal.h"
 #include "tests/scene/scene_testing.h"
 
 namespace hbar::scene {
@@ -43,15 +44,6 @@ class Contacts : public testing::Test {
 
   std::filesystem::path folder_;
 };
-
-std::string refusal(const Scene& scene) {
-  try {
-    static_cast<void>(build_model(scene));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "was built";
-}
 
 TEST_F(Contacts, WithTheGroundTouchItsPlane) {
   const auto made = contacts(

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "hbar/scene/vocabulary.h"
+#include "tests/scene/build_refusal.h"
 #include "tests/scene/scene_testing.h"
 
 namespace hbar::scene {
@@ -170,15 +171,6 @@ TEST(BuildModel, TakesForcesMotorsAndEndEffectors) {
   EXPECT_EQ(model.motors().at(0),
             (hbar::Motor{0, hbar::Motor::Kind::kPosition, -6.0, 6.0, 4.0, 5.0, true}));
   EXPECT_EQ(model.end_effectors().at(0), (hbar::EndEffector{"tip", 1, {7.0, 8.0, 9.0}}));
-}
-
-std::string refusal(const Scene& scene) {
-  try {
-    static_cast<void>(build_model(scene));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "was built";
 }
 
 TEST(BuildModel, SaysWhichBodyHasABadMesh) {
