@@ -270,6 +270,7 @@ TEST(Newton, DescribesEveryStatus) {
   EXPECT_EQ(describe(NewtonStatus::kLineSearch), "line search stalled");
   EXPECT_EQ(describe(NewtonStatus::kSingular), "singular Jacobian");
   EXPECT_EQ(describe(NewtonStatus::kNotFinite), "residual not finite");
+  EXPECT_EQ(describe(NewtonStatus::kStrayed), "converged to a root far from the prediction");
 }
 
 #if HBAR_COUNTS_MALLOC  // not under sanitizers, which own malloc

@@ -7,6 +7,7 @@
 
 #include "hbar/adjoint/check_gradient.h"
 #include "hbar/adjoint/objective_terms.h"
+#include "hbar/core/error.h"
 #include "hbar/core/rotation.h"
 #include "hbar/scene/build_model.h"
 #include "hbar/scene/read_xml.h"
@@ -153,6 +154,23 @@ TEST(StiffContact, HasAGradientThroughAHalvedStep) {
 INSTANTIATE_TEST_SUITE_P(All, StiffContactOfEveryIntegrator,
                          ::testing::Values("bdf1", "sdirk2", "bdf2"),
                          [](const auto& run) { return run.param; });
+
+TEST(StiffContact, SaysWhichPairIsDeepestWhereAStepFails) {
+  Problem problem = drop("bdf1", {});
+  SimulationOptions options = problem.simulator.options();
+  options.newton.max_iter = 2;
+  options.max_halvings = 0;
+  Simulator simulator(problem.simulator.model(), problem.simulator.parameters(), options);
+  problem.inputs.q0[2] = 0.9;  // a corner is in the ground from the start
+  const Rollout rollout = simulator.rollout(problem.inputs);
+  ASSERT_EQ(rollout.report().status, RolloutStatus::kStepFailed);
+  const std::string& message = rollout.report().message;
+  EXPECT_NE(message.find(concat("stopped at step ", rollout.report().steps_done + 1, " of")),
+            std::string::npos)
+      << message;
+  EXPECT_NE(message.find("deepest contact 'box-ground' with "), std::string::npos) << message;
+  EXPECT_NE(message.find(" points down to "), std::string::npos) << message;
+}
 
 /// A torque-driven finger that lashes a box: at these steps BDF2 has a second root in which the
 /// finger has turned through the box several times.
