@@ -42,6 +42,21 @@ BlockSubstitution::BlockSubstitution(std::vector<int> block_sizes) {
   adopted_.assign(block_sizes.size(), 0);
 }
 
+FactorInfo BlockSubstitution::factor_info() const {
+  FactorInfo info;
+  double flops = 0.0;
+  for (int b = 0; b < block_count(); ++b) {
+    const double n = block_size(b);
+    info.entries += n * n;
+    flops += 2.0 / 3.0 * n * n * n;
+  }
+  info.bytes = 8.0 * info.entries + 4.0 * static_cast<double>(below_.size());
+  info.flops = flops;
+  // Blocks below the diagonal are used as they stand in the matrix.
+  for (int j = 0; j < size(); ++j) info.entries += below_block(j).count;
+  return info;
+}
+
 int BlockSubstitution::block_of(int row) const {
   const auto after = std::upper_bound(begin_.begin(), begin_.end(), row);
   return static_cast<int>(after - begin_.begin()) - 1;
@@ -111,8 +126,9 @@ void BlockSubstitution::factorize_block(int block) {
     const auto row = std::find(destination.begin(), destination.end(), j) - destination.begin();
     throw NumericalFailure(
         concat("block_substitution: factorize: diagonal block ", block, " of ", block_count(), " (",
-               size, " x ", size, ") is singular to working precision: the pivot in row ",
-               first + row, ", column ", first + j, " is ", pivot,
+               size, " x ", size, ") is singular to working precision: the pivot in ",
+               named("row", first + static_cast<int>(row)), ", ", named("column", first + j),
+               " is ", pivot,
                "; look for an unknown without stiffness or inertia, or for equations that repeat "
                "each other"));
   }

@@ -24,6 +24,7 @@ class BlockSubstitution final : public LinearSolver {
   explicit BlockSubstitution(std::vector<int> block_sizes);
 
   [[nodiscard]] std::string name() const override { return "block_substitution"; }
+  [[nodiscard]] FactorInfo factor_info() const override;
   [[nodiscard]] int block_count() const { return static_cast<int>(factors_.size()); }
 
   /// Hands in factors of a diagonal block that the caller has already; the next factorize() takes

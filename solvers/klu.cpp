@@ -18,6 +18,13 @@ class Klu final : public LinearSolver {
   ~Klu() override { release(); }
 
   [[nodiscard]] std::string name() const override { return "klu"; }
+  [[nodiscard]] FactorInfo factor_info() const override {
+    if (numeric_ == nullptr) return {};
+    return {.entries = static_cast<double>(numeric_->lnz + numeric_->unz + numeric_->nzoff),
+            .bytes = static_cast<double>(common_.memusage),
+            .flops = {},
+            .inertia = {}};
+  }
 
  private:
   void do_analyze() override {
@@ -71,7 +78,7 @@ class Klu final : public LinearSolver {
   }
 
   [[noreturn]] void throw_status(const char* where) const {
-    if (common_.status == KLU_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (common_.status == KLU_OUT_OF_MEMORY) throw_out_of_memory(where);
     const char* reason = common_.status == KLU_TOO_LARGE
                              ? " (more entries than 32-bit indices can count; use smaller blocks)"
                              : "";
@@ -102,6 +109,8 @@ class Klu final : public LinearSolver {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_klu() { return std::make_unique<Klu>(); }
+std::unique_ptr<LinearSolver> make_klu(const SolverOptions& /*options*/) {
+  return std::make_unique<Klu>();
+}
 
 }  // namespace hbar::solvers

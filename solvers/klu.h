@@ -2,13 +2,13 @@
 
 #include <memory>
 
-#include "hbar/solvers/linear_solver.h"
+#include "hbar/solvers/solver_options.h"
 
 namespace hbar::solvers {
 
 /// SuiteSparse KLU (LGPL): sparse LU by block triangular form, without BLAS, the same bits on every
 /// machine. A second factorize() keeps the pivot order of the first as long as the pivots stay
 /// sound, and chooses a new one otherwise.
-[[nodiscard]] std::unique_ptr<LinearSolver> make_klu();
+[[nodiscard]] std::unique_ptr<LinearSolver> make_klu(const SolverOptions& options = {});
 
 }  // namespace hbar::solvers

@@ -9,8 +9,28 @@
 namespace hbar::solvers {
 namespace {
 
-void refuse_unusable_pattern(const std::string& solver, const SparseMatrix& A) {
-  const std::string where = concat(solver, ": analyze: ");
+/// Whether every entry (i, j) has its (j, i).
+bool has_symmetric_pattern(const SparseMatrix& A) {
+  const SparseMatrix transposed = A.transpose();
+  return std::equal(A.outerIndexPtr(), A.outerIndexPtr() + A.cols() + 1,
+                    transposed.outerIndexPtr()) &&
+         std::equal(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros(),
+                    transposed.innerIndexPtr());
+}
+
+bool same_pattern(const SparseMatrix& A, const SparseMatrix& B) {
+  if (A.rows() != B.rows() || A.cols() != B.cols() || !A.isCompressed()) return false;
+  return A.nonZeros() == B.nonZeros() &&
+         std::equal(A.outerIndexPtr(), A.outerIndexPtr() + A.cols() + 1, B.outerIndexPtr()) &&
+         std::equal(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros(), B.innerIndexPtr());
+}
+
+const char* symbol(System system) { return system == System::kPlain ? "A x = b" : "A^T x = b"; }
+
+}  // namespace
+
+void LinearSolver::refuse_unusable_pattern(const SparseMatrix& A) const {
+  const std::string where = concat(name(), ": analyze: ");
   if (A.rows() != A.cols() || A.rows() == 0) {
     throw InvalidInput(concat(where, "the matrix is ", A.rows(), " x ", A.cols(),
                               "; expected a square one with at least one row"));
@@ -31,31 +51,24 @@ void refuse_unusable_pattern(const std::string& solver, const SparseMatrix& A) {
       row_has_entry[static_cast<std::size_t>(rows[k])] = 1;
     }
     if (begin == end) {
-      throw NumericalFailure(concat(where, "the matrix is singular: column ", j,
+      throw NumericalFailure(concat(where, "the matrix is singular: ", named("column", j),
                                     " has no entry; look for an unknown that no equation uses"));
     }
   }
   const auto empty = std::find(row_has_entry.begin(), row_has_entry.end(), 0);
   if (empty != row_has_entry.end()) {
-    throw NumericalFailure(concat(where, "the matrix is singular: row ",
-                                  empty - row_has_entry.begin(),
+    throw NumericalFailure(concat(where, "the matrix is singular: ",
+                                  named("row", static_cast<int>(empty - row_has_entry.begin())),
                                   " has no entry; look for an equation without unknowns"));
+  }
+  if (needs_symmetry() && !has_symmetric_pattern(A)) {
+    throw InvalidInput(concat(where, "the pattern is not symmetric; use umfpack or klu for such a ",
+                              "matrix, or store both triangles of a symmetric one"));
   }
 }
 
-bool same_pattern(const SparseMatrix& A, const SparseMatrix& B) {
-  if (A.rows() != B.rows() || A.cols() != B.cols() || !A.isCompressed()) return false;
-  return A.nonZeros() == B.nonZeros() &&
-         std::equal(A.outerIndexPtr(), A.outerIndexPtr() + A.cols() + 1, B.outerIndexPtr()) &&
-         std::equal(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros(), B.innerIndexPtr());
-}
-
-const char* symbol(System system) { return system == System::kPlain ? "A x = b" : "A^T x = b"; }
-
-}  // namespace
-
 void LinearSolver::analyze(const SparseMatrix& A) {
-  refuse_unusable_pattern(name(), A);
+  refuse_unusable_pattern(A);
   analyzed_ = false;
   factorized_ = false;
   matrix_ = A;
@@ -63,6 +76,7 @@ void LinearSolver::analyze(const SparseMatrix& A) {
   row_sum_.setZero(A.rows());
   column_max_.setZero(A.cols());
   residual_.setZero(A.rows());
+  refined_.setZero(A.rows());
   do_analyze();
   ++statistics_.analyses;
   analyzed_ = true;
@@ -99,8 +113,8 @@ void LinearSolver::measure_matrix() {
     for (int k = begin[j]; k < begin[j + 1]; ++k) {
       const double magnitude = std::abs(values[k]);
       if (!std::isfinite(magnitude)) {
-        throw NumericalFailure(concat(name(), ": factorize: the entry in row ", rows[k],
-                                      ", column ", j, " is ", values[k],
+        throw NumericalFailure(concat(name(), ": factorize: the entry in ", named("row", rows[k]),
+                                      ", ", named("column", j), " is ", values[k],
                                       "; check the state the matrix was computed at"));
       }
       row_scale_[rows[k]] = std::max(row_scale_[rows[k]], magnitude);
@@ -136,12 +150,23 @@ int LinearSolver::find_small_pivot(std::span<const double> pivots, std::span<con
   return -1;
 }
 
+std::string LinearSolver::named(const char* kind, int index) const {
+  return name_of_ ? concat(kind, ' ', index, " (", name_of_(index), ')') : concat(kind, ' ', index);
+}
+
 void LinearSolver::throw_singular(int row, int column, double pivot) const {
   throw NumericalFailure(concat(name(), ": factorize: the matrix (", matrix_.rows(), " x ",
                                 matrix_.cols(), ") is singular to working precision: the pivot in ",
-                                "row ", row, ", column ", column, " is ", pivot,
+                                named("row", row), ", ", named("column", column), " is ", pivot,
                                 "; look for an unknown without stiffness or inertia, or for ",
                                 "equations that repeat each other"));
+}
+
+void LinearSolver::throw_out_of_memory(const char* phase) const {
+  throw OutOfMemory(concat(name(), ": ", phase, ": out of memory (", matrix_.rows(), " x ",
+                           matrix_.cols(), " matrix with ", matrix_.nonZeros(),
+                           " entries); take fewer steps, another ordering, or for a block ",
+                           "triangular matrix block_substitution, which has no fill"));
 }
 
 void LinearSolver::solve(const MatrixView& B, MatrixSpan X) { solve(System::kPlain, B, X); }
@@ -204,16 +229,17 @@ double LinearSolver::scaled_residual(System system, const VectorView<double>& b,
 void LinearSolver::check_solution(System system, const MatrixView& B, MatrixSpan X) {
   for (Eigen::Index j = 0; j < B.cols(); ++j) {
     double residual = scaled_residual(system, B.col(j), X.col(j));
-    if (residual > bounds_.refine_above) {
+    if (residual > bounds_.refine_above) ++statistics_.refinements;
+    for (int i = 0; i < bounds_.max_refinements && residual > bounds_.refine_above; ++i) {
       do_solve(system, residual_);
-      residual_ += X.col(j);
-      const Eigen::VectorXd refined = residual_;
-      const double refined_residual = scaled_residual(system, B.col(j), refined);
-      ++statistics_.refinements;
-      if (refined_residual < residual) {
-        X.col(j) = refined;
-        residual = refined_residual;
+      refined_ = X.col(j) + residual_;
+      const double before = residual;
+      const double after = scaled_residual(system, B.col(j), refined_);
+      if (after < before) {
+        X.col(j) = refined_;
+        residual = after;
       }
+      if (!(after < 0.5 * before)) break;
     }
     if (!(residual <= bounds_.refuse_above)) {
       throw NumericalFailure(
@@ -227,10 +253,11 @@ void LinearSolver::check_solution(System system, const MatrixView& B, MatrixSpan
 }
 
 void LinearSolver::set_residual_bounds(const ResidualBounds& bounds) {
-  if (!(bounds.refine_above >= 0.0) || !(bounds.refuse_above > 0.0)) {
+  if (!(bounds.refine_above >= 0.0) || !(bounds.refuse_above > 0.0) || bounds.max_refinements < 0) {
     throw InvalidInput(concat(name(), ": residual bounds: refine_above is ", bounds.refine_above,
-                              " and refuse_above ", bounds.refuse_above,
-                              "; expected 0 or more, and more than 0"));
+                              ", refuse_above ", bounds.refuse_above, " and max_refinements ",
+                              bounds.max_refinements,
+                              "; expected 0 or more, more than 0, and 0 or more"));
   }
   bounds_ = bounds;
 }

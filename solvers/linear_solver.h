@@ -2,6 +2,9 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <functional>
+#include <new>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,8 +30,36 @@ enum class System {
 /// When a solution is refined and when it is refused, in terms of the scaled residual
 /// ‖b − A x‖∞ / (‖A‖∞ ‖x‖∞ + ‖b‖∞).
 struct ResidualBounds {
-  double refine_above = 1e-14;  ///< one step of iterative refinement above this
+  double refine_above =
+      1e-14;  ///< iterative refinement above this, as long as it halves the residual
   double refuse_above = 1e-10;  ///< NumericalFailure if it is still above this
+  int max_refinements = 3;      ///< steps of refinement per right-hand side
+};
+
+/// Signs of a symmetric matrix's eigenvalues.
+struct Inertia {
+  int positive = 0;
+  int negative = 0;
+  int zero = 0;
+  friend bool operator==(const Inertia&, const Inertia&) = default;
+};
+
+/// What the last factorisation came to.
+struct FactorInfo {
+  double entries = 0.0;         ///< numbers that the factors hold, stored zeros included
+  double bytes = 0.0;           ///< of factors, analysis and workspace, about
+  std::optional<double> flops;  ///< operations of the factorisation, where the solver counts them
+  std::optional<Inertia> inertia;  ///< where the factorisation shows it
+};
+
+/// A solver could not get the memory it asked for; the message says which solver and what to try.
+class OutOfMemory : public std::bad_alloc {
+ public:
+  explicit OutOfMemory(const std::string& message) : error_(message) {}
+  [[nodiscard]] const char* what() const noexcept override { return error_.what(); }
+
+ private:
+  Error error_;  // for its string, which copies without throwing
 };
 
 /// What a solver has done since it was made.
@@ -37,7 +68,7 @@ struct SolverStatistics {
   int factorizations = 0;       ///< numeric factorisations, refactorisations included
   int refactorizations = 0;     ///< of these, those that kept the earlier pivot order
   int solves = 0;               ///< right-hand sides solved
-  int refinements = 0;          ///< right-hand sides that needed a step of refinement
+  int refinements = 0;          ///< right-hand sides that needed refinement
   double worst_residual = 0.0;  ///< largest scaled residual that was accepted
 };
 
@@ -45,7 +76,7 @@ struct SolverStatistics {
 /// as often as they change, solve as often as wanted.
 ///
 /// No solution leaves unchecked: every right-hand side's residual is computed with the matrix as
-/// given, refined once where that helps, and refused if it is too large. An object holds its
+/// given, refined where that helps, and refused if it is too large. An object holds its
 /// workspace and belongs to one thread at a time; different objects are independent.
 class LinearSolver {
  public:
@@ -56,12 +87,20 @@ class LinearSolver {
 
   /// Name as the factory's, for messages: "block_substitution", "klu", "umfpack".
   [[nodiscard]] virtual std::string name() const = 0;
+  /// What the last factorisation came to; meaningless before one.
+  [[nodiscard]] virtual FactorInfo factor_info() const = 0;
+
+  /// Says what a row (and the column of the same index) stands for; messages then name it.
+  ///
+  /// @param name_of  from an index, 0 ≤ index < n, to "stage 3, coordinate elbow" or the like
+  void name_unknowns(std::function<std::string(int)> name_of) { name_of_ = std::move(name_of); }
 
   /// Studies the pattern of A; its values are not read.
   ///
   /// @param A  square, compressed, row indices ascending  [n x n]
-  /// @throws InvalidInput if A is not that
+  /// @throws InvalidInput if A is not that, or has no symmetric pattern where the solver needs one
   /// @throws NumericalFailure naming a row or column without entries
+  /// @throws OutOfMemory
   void analyze(const SparseMatrix& A);
 
   /// Factorises the values of A, and keeps a copy of them for the residual.
@@ -69,7 +108,9 @@ class LinearSolver {
   /// @param A  of the pattern last analysed  [n x n]
   /// @throws InvalidInput if the pattern is another one, or none was analysed
   /// @throws NumericalFailure if an entry is not finite, or A is singular to working precision
-  ///   (a pivot below 1e-14 of its column, rows scaled to 1): the message names row and column
+  ///   (a pivot below 1e-14 of its column, rows scaled to 1): the message names row and column, and
+  ///   what they stand for; or if a symmetric solver finds A not to be what it is for
+  /// @throws OutOfMemory
   void factorize(const SparseMatrix& A);
 
   /// Solves A X = B.
@@ -96,10 +137,13 @@ class LinearSolver {
   [[nodiscard]] int size() const { return static_cast<int>(matrix_.rows()); }
   [[nodiscard]] const SolverStatistics& statistics() const { return statistics_; }
   [[nodiscard]] const ResidualBounds& residual_bounds() const { return bounds_; }
-  /// @throws InvalidInput unless 0 ≤ refine_above and 0 < refuse_above
+  /// @throws InvalidInput unless 0 ≤ refine_above, 0 < refuse_above and 0 ≤ max_refinements
   void set_residual_bounds(const ResidualBounds& bounds);
 
  protected:
+  /// Whether only matrices of symmetric pattern are taken; then their values are taken as
+  /// symmetric, too, and one triangle may be read alone.
+  [[nodiscard]] virtual bool needs_symmetry() const { return false; }
   /// Analyses matrix().
   virtual void do_analyze() = 0;
   /// Factorises matrix(), whose values are finite. Calls refuse_small_pivots or its like.
@@ -127,6 +171,16 @@ class LinearSolver {
   /// @param pivot   of the row-scaled matrix
   [[noreturn]] void throw_singular(int row, int column, double pivot) const;
 
+  /// Throws OutOfMemory.
+  ///
+  /// @param phase  "analyze", "factorize" or "solve"
+  [[noreturn]] void throw_out_of_memory(const char* phase) const;
+
+  /// "row 12", or "row 12 (stage 3, coordinate elbow)" where unknowns have names.
+  ///
+  /// @param kind  "row" or "column"
+  [[nodiscard]] std::string named(const char* kind, int index) const;
+
   void count_refactorization() { ++statistics_.refactorizations; }
 
   /// A pivot this small against its column makes a matrix singular to working precision.
@@ -135,14 +189,17 @@ class LinearSolver {
  private:
   void measure_matrix();
   void measure_columns();
+  void refuse_unusable_pattern(const SparseMatrix& A) const;
   void check_solution(System system, const MatrixView& B, MatrixSpan X);
   double scaled_residual(System system, const VectorView<double>& b, const VectorView<double>& x);
 
   SparseMatrix matrix_;
+  std::function<std::string(int)> name_of_;
   Eigen::VectorXd row_scale_;
   Eigen::VectorXd row_sum_;
   Eigen::VectorXd column_max_;
   Eigen::VectorXd residual_;
+  Eigen::VectorXd refined_;
   Eigen::MatrixXd kept_rhs_;
   double norm_inf_ = 0.0;
   double norm_one_ = 0.0;

@@ -24,6 +24,13 @@ class Umfpack final : public LinearSolver {
   ~Umfpack() override { release(); }
 
   [[nodiscard]] std::string name() const override { return "umfpack"; }
+  [[nodiscard]] FactorInfo factor_info() const override {
+    if (numeric_ == nullptr) return {};
+    return {.entries = info_[UMFPACK_LNZ] + info_[UMFPACK_UNZ],
+            .bytes = info_[UMFPACK_PEAK_MEMORY] * info_[UMFPACK_SIZE_OF_UNIT],
+            .flops = info_[UMFPACK_FLOPS],
+            .inertia = {}};
+  }
 
  private:
   void do_analyze() override {
@@ -71,8 +78,8 @@ class Umfpack final : public LinearSolver {
     }
   }
 
-  [[noreturn]] static void throw_status(const char* where, int status) {
-    if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
+  [[noreturn]] void throw_status(const char* where, int status) const {
+    if (status == UMFPACK_ERROR_out_of_memory) throw_out_of_memory(where);
     throw NumericalFailure(
         concat("umfpack: ", where, ": status ", status, "; its meaning is in umfpack.h"));
   }
@@ -99,6 +106,8 @@ class Umfpack final : public LinearSolver {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_umfpack() { return std::make_unique<Umfpack>(); }
+std::unique_ptr<LinearSolver> make_umfpack(const SolverOptions& /*options*/) {
+  return std::make_unique<Umfpack>();
+}
 
 }  // namespace hbar::solvers
