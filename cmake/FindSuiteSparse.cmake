@@ -2,9 +2,9 @@
 #
 #   find_package(SuiteSparse REQUIRED COMPONENTS KLU OPTIONAL_COMPONENTS UMFPACK)
 #
-# Components: KLU, UMFPACK. Each one found becomes an imported target
+# Components: KLU, UMFPACK, CHOLMOD, SPQR. Each one found becomes an imported target
 #
-#   hbar_suitesparse::KLU    hbar_suitesparse::UMFPACK
+#   hbar_suitesparse::KLU    hbar_suitesparse::UMFPACK    and so on
 #
 # (names of our own: SuiteSparse 7 defines SuiteSparse::KLU itself), and sets
 # SuiteSparse_<component>_FOUND. Static libraries need hbarConfig.cmake to call this with the same
@@ -15,18 +15,23 @@ include(FindPackageHandleStandardArgs)
 
 set(_hbar_suitesparse_header_KLU klu.h)
 set(_hbar_suitesparse_header_UMFPACK umfpack.h)
+set(_hbar_suitesparse_header_CHOLMOD cholmod.h)
+set(_hbar_suitesparse_header_SPQR SuiteSparseQR.hpp)
 # What each part itself calls, needed where the libraries are static ones.
 set(_hbar_suitesparse_needs_KLU btf amd colamd suitesparseconfig)
 set(_hbar_suitesparse_needs_UMFPACK amd cholmod suitesparseconfig)
+set(_hbar_suitesparse_needs_CHOLMOD amd colamd camd ccolamd suitesparseconfig metis lapack blas)
+set(_hbar_suitesparse_needs_SPQR cholmod ${_hbar_suitesparse_needs_CHOLMOD})
 
 if(NOT SuiteSparse_FIND_COMPONENTS)
-  set(SuiteSparse_FIND_COMPONENTS KLU UMFPACK)
+  set(SuiteSparse_FIND_COMPONENTS KLU UMFPACK CHOLMOD SPQR)
 endif()
 
 set(_hbar_suitesparse_required)
 foreach(_part IN LISTS SuiteSparse_FIND_COMPONENTS)
   if(NOT DEFINED _hbar_suitesparse_header_${_part})
-    message(FATAL_ERROR "FindSuiteSparse: unknown component ${_part}; known: KLU, UMFPACK")
+    message(FATAL_ERROR "FindSuiteSparse: unknown component ${_part}; "
+                        "known: KLU, UMFPACK, CHOLMOD, SPQR")
   endif()
   string(TOLOWER ${_part} _library)
   find_path(SuiteSparse_${_part}_INCLUDE_DIR ${_hbar_suitesparse_header_${_part}}

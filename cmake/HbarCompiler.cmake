@@ -55,7 +55,14 @@ foreach(floor core scene solvers adjoint)
 endforeach()
 
 # An optional part has an export set of its own: who does without it needs none of its dependencies.
-set(HBAR_OPTIONAL_COMPONENTS umfpack ipopt)
+# One that uses another comes after it.
+set(HBAR_OPTIONAL_COMPONENTS umfpack ipopt suite)
+
+# hbar_leave_out(NAMES...): what this build goes without. Headers NAME.h are not installed, tests
+# NAME*_test.cpp not compiled.
+function(hbar_leave_out)
+  set_property(GLOBAL APPEND PROPERTY HBAR_LEFT_OUT ${ARGN})
+endfunction()
 
 function(hbar_install_target target)
   set(export hbarTargets)
@@ -86,7 +93,7 @@ function(hbar_add_floor name)
     $<BUILD_INTERFACE:${HBAR_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(hbar_${name} PRIVATE $<BUILD_INTERFACE:hbar_flags>)
   # Eigen takes a third of most files' compilation; it is read once.
-  if(HBAR_PRECOMPILE_HEADERS AND name MATCHES "^(core|scene|solvers|adjoint)$")
+  if(HBAR_PRECOMPILE_HEADERS AND name MATCHES "^(core|scene|solvers|suite|adjoint)$")
     if(name STREQUAL "core")
       target_precompile_headers(hbar_core PRIVATE <Eigen/Dense> <functional> <memory> <string>
                                 <variant> <vector>)

@@ -1,10 +1,9 @@
 # Installation: headers under include/hbar/FLOOR, libraries, and find_package(hbar).
 
 set(not_built)
-foreach(component IN LISTS HBAR_OPTIONAL_COMPONENTS)
-  if(NOT TARGET hbar_${component})
-    list(APPEND not_built PATTERN ${component}.h EXCLUDE)
-  endif()
+get_property(left_out GLOBAL PROPERTY HBAR_LEFT_OUT)
+foreach(name IN LISTS left_out)
+  list(APPEND not_built PATTERN ${name}.h EXCLUDE)
 endforeach()
 foreach(floor core scene solvers adjoint)
   if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${floor})
@@ -31,4 +30,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/hbarConfigVersion.cmake
 install(FILES ${PROJECT_BINARY_DIR}/hbarConfig.cmake ${PROJECT_BINARY_DIR}/hbarConfigVersion.cmake
         ${PROJECT_SOURCE_DIR}/cmake/FindSuiteSparse.cmake
         ${PROJECT_SOURCE_DIR}/cmake/FindHbarIpopt.cmake
+        ${PROJECT_SOURCE_DIR}/cmake/FindHbarMumps.cmake
         DESTINATION ${HBAR_CONFIG_DIR})
