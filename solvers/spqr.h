@@ -6,13 +6,15 @@
 
 namespace hbar::solvers {
 
-/// SuiteSparseQR (GPL): multifrontal sparse QR of any square matrix. Slower than LU and with more
-/// fill, but backward stable for every matrix, whatever its scales. Its indices are always 64 bits
-/// wide.
+/// SuiteSparseQR (GPL): multifrontal sparse QR of any square matrix, its rows and columns scaled.
+/// More fill and work than LU, but backward stable without choosing pivots. Its indices are always
+/// 64 bits wide, whatever the options say; it allocates in every solve.
 ///
-/// Orderings: natural, amd, colamd (the default), metis.
+/// factorize() throws NumericalFailure naming the column that depends on those eliminated before
+/// it, and the row where that column is largest, as QR has no pivot rows.
 ///
-/// @throws InvalidInput for an ordering that is not among these
+/// @param options  orderings: natural, amd, colamd (the default), metis, all of AᵀA
+/// @throws InvalidInput for another ordering
 [[nodiscard]] std::unique_ptr<LinearSolver> make_spqr(const SolverOptions& options = {});
 
 }  // namespace hbar::solvers
