@@ -1,9 +1,7 @@
 #pragma once
 
-#include <memory>
-
+#include "hbar/adjoint/factorized_linearization.h"
 #include "hbar/adjoint/gradient.h"
-#include "hbar/adjoint/linearization.h"
 
 namespace hbar {
 
@@ -13,9 +11,8 @@ namespace hbar {
 /// Holds its workspace for one simulator and belongs to one thread at a time.
 class AssembledAdjoint {
  public:
-  /// @param solver  for H̄; null means block substitution
-  explicit AssembledAdjoint(Simulator& simulator,
-                            std::unique_ptr<solvers::LinearSolver> solver = nullptr);
+  /// @param factory  of the solver for H̄; null means block substitution
+  explicit AssembledAdjoint(Simulator& simulator, solvers::SolverFactory factory = nullptr);
 
   /// @param trajectory  whole, of this simulator
   /// @throws NumericalFailure if H̄ is singular or the residual is too large
@@ -28,18 +25,12 @@ class AssembledAdjoint {
   /// z̄ of the last call.                                                        [m]
   [[nodiscard]] const Eigen::VectorXd& adjoint() const { return z_bar_; }
   /// The system of the last call.
-  [[nodiscard]] const Linearization& linearization() const { return *linearization_; }
-  [[nodiscard]] const solvers::LinearSolver& solver() const { return *solver_; }
+  [[nodiscard]] const Linearization& linearization() const { return system_.linearization(); }
+  [[nodiscard]] const solvers::LinearSolver& solver() const { return system_.solver(); }
 
  private:
-  void solve(const Trajectory& trajectory, const Eigen::VectorXd& y_bar);
-
   Simulator& simulator_;
-  Linearizer linearizer_;
-  std::unique_ptr<solvers::LinearSolver> solver_;
-  bool owns_block_solver_ = false;
-  int analyzed_pattern_ = 0;
-  const Linearization* linearization_ = nullptr;
+  FactorizedLinearization system_;
   Eigen::VectorXd z_bar_;
 };
 

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "hbar/solvers/block_substitution.h"
-
 namespace hbar {
 namespace {
 
@@ -126,28 +124,12 @@ Directions Directions::zero(const Simulator& simulator, Eigen::Index count) {
           Eigen::MatrixXd::Zero(model.dof(), count), Eigen::MatrixXd::Zero(model.dof(), count)};
 }
 
-TangentSweep::TangentSweep(Simulator& simulator, std::unique_ptr<solvers::LinearSolver> solver)
-    : simulator_(simulator),
-      linearizer_(simulator),
-      solver_(std::move(solver)),
-      owns_block_solver_(solver_ == nullptr) {}
-
-void TangentSweep::assemble(const Trajectory& trajectory) {
-  linearization_ = &linearizer_.linearize(trajectory);
-  if (analyzed_pattern_ != linearizer_.pattern_count()) {
-    if (owns_block_solver_) {
-      solver_ = solvers::make_block_substitution(linearization_->block_sizes);
-    }
-    solver_->analyze(linearization_->H.matrix());
-    analyzed_pattern_ = linearizer_.pattern_count();
-  }
-  solver_->factorize(linearization_->H.matrix());
-}
+TangentSweep::TangentSweep(Simulator& simulator, solvers::SolverFactory factory)
+    : simulator_(simulator), system_(simulator, std::move(factory)) {}
 
 Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directions& directions) {
-  assemble(trajectory);
+  const Linearization& system = system_.update(trajectory);
   const Model& model = simulator_.model();
-  const Linearization& system = *linearization_;
   const int n = model.dof();
   const int stages = trajectory.timeline.stage_count();
   const int steps = trajectory.step_count();
@@ -158,7 +140,7 @@ Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directio
   Eigen::MatrixXd dq(stages * n, directions.count());
   dq.topRows(n) = directions.q0;
   Eigen::MatrixXd solution(rhs_.rows(), rhs_.cols());
-  solver_->solve(rhs_, solution);
+  system_.solver().solve(rhs_, solution);
   dq.bottomRows(rhs_.rows()) = solution;
   Tangents out;
   out.q.resize((steps + 1) * n, directions.count());

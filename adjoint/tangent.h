@@ -1,8 +1,6 @@
 #pragma once
 
-#include <memory>
-
-#include "hbar/adjoint/linearization.h"
+#include "hbar/adjoint/factorized_linearization.h"
 #include "hbar/adjoint/objective.h"
 
 namespace hbar {
@@ -32,29 +30,22 @@ struct Tangents {
 /// Holds its workspace for one simulator and belongs to one thread at a time.
 class TangentSweep {
  public:
-  /// @param solver  for H̄; null means block substitution
-  explicit TangentSweep(Simulator& simulator,
-                        std::unique_ptr<solvers::LinearSolver> solver = nullptr);
+  /// @param factory  of the solver for H̄; null means block substitution
+  explicit TangentSweep(Simulator& simulator, solvers::SolverFactory factory = nullptr);
 
   /// @param trajectory  whole, of this simulator
   /// @throws NumericalFailure if H̄ is singular or a residual is too large
   [[nodiscard]] Tangents push_forward(const Trajectory& trajectory, const Directions& directions);
 
   /// The system that was assembled last.
-  [[nodiscard]] const Linearization& linearization() const { return *linearization_; }
+  [[nodiscard]] const Linearization& linearization() const { return system_.linearization(); }
   /// −∂ḡ·directions of the last call: what H̄ was solved with.  [m x count]
   [[nodiscard]] const Eigen::MatrixXd& right_hand_sides() const { return rhs_; }
-  [[nodiscard]] const solvers::LinearSolver& solver() const { return *solver_; }
+  [[nodiscard]] const solvers::LinearSolver& solver() const { return system_.solver(); }
 
  private:
-  void assemble(const Trajectory& trajectory);
-
   Simulator& simulator_;
-  Linearizer linearizer_;
-  std::unique_ptr<solvers::LinearSolver> solver_;
-  bool owns_block_solver_ = false;
-  int analyzed_pattern_ = 0;
-  const Linearization* linearization_ = nullptr;
+  FactorizedLinearization system_;
   Eigen::MatrixXd rhs_;
 };
 

@@ -59,8 +59,4 @@ struct TrajectorySystem {
                                                const Trajectory& trajectory,
                                                const SystemOptions& options = {});
 
-/// Names the unknowns of H̄ for LinearSolver::name_unknowns: "stage 3 (t = 0.04), coordinate elbow".
-[[nodiscard]] std::function<std::string(int)> stage_names(const Simulator& simulator,
-                                                          const Timeline& timeline);
-
 }  // namespace hbar

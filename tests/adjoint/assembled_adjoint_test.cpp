@@ -14,14 +14,13 @@ namespace {
 using testing::small_problem;
 using testing::spinning_problem;
 
-std::vector<std::unique_ptr<solvers::LinearSolver>> every_solver() {
-  std::vector<std::unique_ptr<solvers::LinearSolver>> solvers;
-  solvers.push_back(nullptr);  // block substitution
-  solvers.push_back(solvers::make_klu());
+std::vector<solvers::SolverFactory> every_solver() {
+  return {nullptr,  // block substitution
+          [](const auto& options, const auto&) { return solvers::make_klu(options); },
 #ifdef HBAR_HAVE_UMFPACK
-  solvers.push_back(solvers::make_umfpack());
+          [](const auto& options, const auto&) { return solvers::make_umfpack(options); }
 #endif
-  return solvers;
+  };
 }
 
 class AssembledAdjointOfEveryIntegrator : public ::testing::TestWithParam<std::string> {};
@@ -31,8 +30,8 @@ TEST_P(AssembledAdjointOfEveryIntegrator, HasTheSweepsGradientFromEverySolver) {
     Problem problem = spinning ? spinning_problem(GetParam()) : small_problem(GetParam());
     const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
     const Gradient swept = gradient(problem.simulator, trajectory, problem.objective);
-    for (auto& solver : every_solver()) {
-      AssembledAdjoint assembled(problem.simulator, std::move(solver));
+    for (const solvers::SolverFactory& factory : every_solver()) {
+      AssembledAdjoint assembled(problem.simulator, factory);
       const Gradient ours = assembled.gradient(trajectory, problem.objective);
       const std::string name = assembled.solver().name();
       EXPECT_EQ(ours.value, swept.value) << name;
@@ -46,7 +45,9 @@ TEST_P(AssembledAdjointOfEveryIntegrator, HasTheSweepsGradientFromEverySolver) {
 
 TEST_P(AssembledAdjointOfEveryIntegrator, AnalysesItsPatternOnce) {
   Problem problem = small_problem(GetParam());
-  AssembledAdjoint assembled(problem.simulator, solvers::make_klu());
+  AssembledAdjoint assembled(problem.simulator, [](const auto& options, const auto&) {
+    return solvers::make_klu(options);
+  });
   for (int i = 0; i < 4; ++i) {
     problem.inputs.q0[0] += 0.01;
     const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();

@@ -91,7 +91,10 @@ TEST_P(ContactGradientOfEveryIntegrator, IsThatOfTheAssembledAdjoint) {
     const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
     const Gradient swept = gradient(problem.simulator, trajectory, problem.objective);
     for (const bool klu : {false, true}) {
-      AssembledAdjoint assembled(problem.simulator, klu ? solvers::make_klu() : nullptr);
+      const solvers::SolverFactory by_klu = [](const auto& options, const auto&) {
+        return solvers::make_klu(options);
+      };
+      AssembledAdjoint assembled(problem.simulator, klu ? by_klu : nullptr);
       const Gradient ours = assembled.gradient(trajectory, problem.objective);
       EXPECT_LT((ours.p - swept.p).norm(), 1e-10 * swept.p.norm()) << klu;
       EXPECT_LT((ours.u - swept.u).norm(), 1e-10 * swept.u.norm()) << klu;

@@ -92,15 +92,16 @@ TEST_P(TangentOfEveryIntegrator, HasTheSameTangentsFromEverySolver) {
   Simulator& simulator = problem_.simulator;
   const Directions d = random_directions(simulator, 3);
   const Tangents by_blocks = TangentSweep(simulator).push_forward(trajectory_, d);
-  std::vector<std::unique_ptr<solvers::LinearSolver>> others;
-  others.push_back(solvers::make_klu());
+  const std::vector<solvers::SolverFactory> others = {
+      [](const auto& options, const auto&) { return solvers::make_klu(options); },
 #ifdef HBAR_HAVE_UMFPACK
-  others.push_back(solvers::make_umfpack());
+      [](const auto& options, const auto&) { return solvers::make_umfpack(options); },
 #endif
-  for (auto& solver : others) {
-    const std::string name = solver->name();
-    TangentSweep sweep(simulator, std::move(solver));
+  };
+  for (const solvers::SolverFactory& factory : others) {
+    TangentSweep sweep(simulator, factory);
     const Tangents tangents = sweep.push_forward(trajectory_, d);
+    const std::string name = sweep.solver().name();
     EXPECT_LT((tangents.q - by_blocks.q).norm(), 1e-11 * by_blocks.q.norm()) << name;
     EXPECT_LT((tangents.v - by_blocks.v).norm(), 1e-11 * by_blocks.v.norm()) << name;
   }

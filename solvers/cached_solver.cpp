@@ -1,0 +1,34 @@
+#include "hbar/solvers/cached_solver.h"
+
+#include <utility>
+
+#include "hbar/solvers/block_substitution.h"
+#include "hbar/solvers/klu.h"
+
+namespace hbar::solvers {
+
+SolverFactory default_solver() {
+  return [](const SolverOptions& options, const SparseMatrix&) -> std::unique_ptr<LinearSolver> {
+    if (options.structure == Structure::kBlockTriangular && !options.block_sizes.empty()) {
+      return make_block_substitution(options.block_sizes);
+    }
+    return make_klu(options);
+  };
+}
+
+CachedSolver::CachedSolver(SolverFactory factory)
+    : factory_(factory ? std::move(factory) : default_solver()) {}
+
+LinearSolver& CachedSolver::factorize(const SparseMatrix& A, const SolverOptions& options,
+                                      const std::function<std::string(int)>& names, int pattern) {
+  if (pattern_ != pattern) {
+    solver_ = factory_(options, A);
+    solver_->name_unknowns(names);
+    solver_->analyze(A);
+    pattern_ = pattern;
+  }
+  solver_->factorize(A);
+  return *solver_;
+}
+
+}  // namespace hbar::solvers
