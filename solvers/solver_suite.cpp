@@ -1,113 +1,203 @@
 #include "hbar/solvers/solver_suite.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "hbar/solvers/block_banded.h"
 #include "hbar/solvers/block_substitution.h"
 #include "hbar/solvers/cholmod.h"
+#include "hbar/solvers/eigen_sparse_lu.h"
 #include "hbar/solvers/klu.h"
+#include "hbar/solvers/lapack_band.h"
+#include "hbar/solvers/mumps.h"
 #include "hbar/solvers/spqr.h"
-#ifdef HBAR_HAVE_UMFPACK
 #include "hbar/solvers/umfpack.h"
-#endif
 
 namespace hbar::solvers {
 namespace {
 
 using Make = std::unique_ptr<LinearSolver> (*)(const SolverOptions&);
 
-const std::vector<Structure> kEvery = {Structure::kGeneral, Structure::kBlockTriangular,
-                                       Structure::kPeriodic, Structure::kDefinite,
-                                       Structure::kQuasiDefinite};
+// What was there when this was built.
+#ifdef HBAR_HAVE_UMFPACK
+constexpr bool kHasUmfpack = true;
+#else
+constexpr bool kHasUmfpack = false;
+#endif
+#ifdef HBAR_HAVE_CHOLMOD
+constexpr bool kHasCholmod = true;
+#else
+constexpr bool kHasCholmod = false;
+#endif
+#ifdef HBAR_HAVE_SPQR
+constexpr bool kHasSpqr = true;
+#else
+constexpr bool kHasSpqr = false;
+#endif
+#ifdef HBAR_HAVE_LAPACK
+constexpr bool kHasLapack = true;
+#else
+constexpr bool kHasLapack = false;
+#endif
+#ifdef HBAR_HAVE_MUMPS
+constexpr bool kHasMumps = true;
+#else
+constexpr bool kHasMumps = false;
+#endif
+
+/// The function, or nullptr where its library is not there; then nothing refers to it.
+template <bool kIsThere, Make kMake>
+constexpr Make if_there() {
+  if constexpr (kIsThere) {
+    return kMake;
+  } else {
+    return nullptr;
+  }
+}
 
 std::unique_ptr<LinearSolver> make_substitution(const SolverOptions& options) {
   return make_block_substitution(options.block_sizes);
 }
 
-// What this build can make; nullptr where the library behind a solver was not there.
-#ifdef HBAR_HAVE_UMFPACK
-constexpr Make kUmfpack = make_umfpack;
-#else
-constexpr Make kUmfpack = nullptr;
-#endif
-#ifdef HBAR_HAVE_CHOLMOD
-constexpr Make kCholmodLlt = make_cholmod_llt;
-constexpr Make kCholmodSupernodal = make_cholmod_supernodal;
-constexpr Make kCholmodLdlt = make_cholmod_ldlt;
-constexpr Make kCholmodNormal = make_cholmod_normal;
-#else
-constexpr Make kCholmodLlt = nullptr;
-constexpr Make kCholmodSupernodal = nullptr;
-constexpr Make kCholmodLdlt = nullptr;
-constexpr Make kCholmodNormal = nullptr;
-#endif
-#ifdef HBAR_HAVE_SPQR
-constexpr Make kSpqr = make_spqr;
-#else
-constexpr Make kSpqr = nullptr;
-#endif
-
-/// Every solver that a build can have; `make` is nullptr where this one does not.
+/// Every solver that a build can have; `make` is nullptr where this one has not.
 std::vector<SolverEntry> every_solver() {
   using enum Structure;
   using enum Ordering;
+  using Structures = std::vector<Structure>;
+  using Orderings = std::vector<Ordering>;
+  const Structures any = {kGeneral, kBlockTriangular, kPeriodic, kDefinite, kQuasiDefinite};
+  const Structures band = {kGeneral, kBlockTriangular, kDefinite, kQuasiDefinite};
+  const Structures triangle = {kBlockTriangular};
+  const Structures definite = {kDefinite};
+  const Structures symmetric = {kDefinite, kQuasiDefinite};
+  const Orderings as_given = {kDefault, kNatural};
+  const Orderings minimum = {kDefault, kNatural, kAmd, kColamd};
+  const Orderings of_mumps = {kDefault, kNatural, kAmd, kMetis};
+  const Orderings unnested = {kDefault, kNatural, kAmd, kColamd, kMetis};
+  const Orderings nested = {kDefault, kNatural, kAmd, kMetis, kNested};
+  const Orderings every = {kDefault, kNatural, kAmd, kColamd, kMetis, kNested};
+  const char* own = "BSD-2-Clause";
+  const char* lgpl = "LGPL-2.1-or-later";
+  const char* gpl = "GPL-2.0-or-later";
+  constexpr Make kBand = if_there<kHasLapack, make_lapack_band>();
+  constexpr Make kUmfpack = if_there<kHasUmfpack, make_umfpack>();
+  constexpr Make kMumps = if_there<kHasMumps, make_mumps>();
+  constexpr Make kLlt = if_there<kHasCholmod, make_cholmod_llt>();
+  constexpr Make kSupernodal = if_there<kHasCholmod, make_cholmod_supernodal>();
+  constexpr Make kLdlt = if_there<kHasCholmod, make_cholmod_ldlt>();
+  constexpr Make kNormal = if_there<kHasCholmod, make_cholmod_normal>();
+  constexpr Make kSpqr = if_there<kHasSpqr, make_spqr>();
   return {
-      {"block_substitution",
-       "dense LU of the diagonal blocks, then substitution",
-       "MIT",
-       {kBlockTriangular},
-       {kDefault, kNatural},
-       false,
-       make_substitution},
-      {"klu",
-       "sparse LU by block triangular form, without BLAS",
-       "LGPL-2.1-or-later",
-       kEvery,
-       {kDefault},
-       false,
-       [](const SolverOptions& options) { return make_klu(options); }},
-      {"umfpack",
-       "multifrontal sparse LU",
-       "GPL-2.0-or-later",
-       kEvery,
-       {kDefault},
-       false,
-       kUmfpack},
-      {"cholmod_llt",
-       "simplicial Cholesky factors, without BLAS",
-       "LGPL-2.1-or-later",
-       {kDefinite},
-       {kDefault, kNatural, kAmd, kMetis, kNested},
-       true,
-       kCholmodLlt},
-      {"cholmod_supernodal",
-       "Cholesky factors of dense blocks",
-       "GPL-2.0-or-later",
-       {kDefinite},
-       {kDefault, kNatural, kAmd, kMetis, kNested},
-       true,
-       kCholmodSupernodal},
-      {"cholmod_ldlt",
-       "simplicial LDL' without pivoting, and the inertia",
-       "LGPL-2.1-or-later",
-       {kDefinite, kQuasiDefinite},
-       {kDefault, kNatural, kAmd, kMetis, kNested},
-       true,
-       kCholmodLdlt},
-      {"cholmod_normal",
-       "Cholesky factors of A A': squares the condition number",
-       "LGPL-2.1-or-later",
-       kEvery,
-       {kDefault, kNatural, kAmd, kColamd, kMetis, kNested},
-       true,
-       kCholmodNormal},
-      {"spqr",
-       "multifrontal sparse QR",
-       "GPL-2.0-or-later",
-       kEvery,
-       {kDefault, kNatural, kAmd, kColamd, kMetis},
-       true,
-       kSpqr},
+      {"block_substitution", "dense LU of the diagonal blocks, then substitution", own, triangle,
+       as_given, true, make_substitution},
+      {"block_banded", "dense LU of block columns, for bands", own, band, as_given, true,
+       make_block_banded},
+      {"lapack_band", "LAPACK's LU of a band", "BSD-3-Clause", band, as_given, false, kBand},
+      {"klu", "SuiteSparse's LU by block triangular form, without BLAS", lgpl, any, minimum, true,
+       make_klu},
+      {"umfpack", "SuiteSparse's multifrontal LU", gpl, any, unnested, true, kUmfpack},
+      {"eigen_sparse_lu", "Eigen's supernodal LU", "MPL-2.0", any, minimum, true,
+       make_eigen_sparse_lu},
+      {"mumps", "MUMPS' multifrontal LU, or LDL' of a symmetric matrix", "CECILL-C", any, of_mumps,
+       true, kMumps},
+      {"cholmod_llt", "SuiteSparse's Cholesky factors, a column at a time", lgpl, definite, nested,
+       true, kLlt},
+      {"cholmod_supernodal", "SuiteSparse's Cholesky factors, by dense blocks", gpl, definite,
+       nested, true, kSupernodal},
+      {"cholmod_ldlt", "SuiteSparse's LDL' without pivoting, which tells the inertia", lgpl,
+       symmetric, nested, true, kLdlt},
+      {"cholmod_normal", "SuiteSparse's Cholesky factors of A A': half the digits are lost", lgpl,
+       any, every, true, kNormal},
+      {"spqr", "SuiteSparse's multifrontal QR", gpl, any, unnested, true, kSpqr},
   };
+}
+
+/// What choose_solver goes by.
+struct Shape {
+  double entries_per_row = 0.0;
+  double band_per_entry = 0.0;       ///< entries of the band, zeros included, for one of the matrix
+  bool is_block_triangular = false;  ///< block lower triangular in options.block_sizes
+};
+
+Shape shape_of(const SolverOptions& options, const SparseMatrix& A) {
+  std::vector<int> begin_of_row;  // of the block that a row is in
+  for (const int size : options.block_sizes) {
+    const int begin = static_cast<int>(begin_of_row.size());
+    begin_of_row.insert(begin_of_row.end(), static_cast<std::size_t>(std::max(size, 0)), begin);
+  }
+  Shape shape;
+  shape.is_block_triangular =
+      !begin_of_row.empty() && static_cast<Eigen::Index>(begin_of_row.size()) == A.rows();
+  Eigen::Index width = 0;
+  for (Eigen::Index j = 0; j < A.cols(); ++j) {
+    for (SparseMatrix::InnerIterator entry(A, j); entry; ++entry) {
+      width = std::max(width, std::abs(entry.row() - j));
+      if (shape.is_block_triangular && entry.row() < begin_of_row[static_cast<std::size_t>(j)]) {
+        shape.is_block_triangular = false;
+      }
+    }
+  }
+  const double rows = static_cast<double>(std::max<Eigen::Index>(A.rows(), 1));
+  const double entries = static_cast<double>(std::max<Eigen::Index>(A.nonZeros(), 1));
+  shape.entries_per_row = entries / rows;
+  shape.band_per_entry = rows * (2.0 * static_cast<double>(width) + 1.0) / entries;
+  return shape;
+}
+
+// Where dense blocks by BLAS overtake one column at a time: entries per row of the matrix.
+constexpr double kManyEntries = 48.0;
+// Up to this many places of the band for one entry, a matrix is eliminated as it comes.
+constexpr double kNarrowBand = 3.0;
+
+/// Rules for choose_solver, the first that fits decides; the last but one is for builds without
+/// UMFPACK as well.
+std::vector<std::pair<bool, SolverChoice>> rules(const SolverOptions& options, const Shape& shape) {
+  using enum Ordering;
+  const bool definite = options.structure == Structure::kDefinite;
+  const bool quasi_definite = options.structure == Structure::kQuasiDefinite;
+  const bool dense = shape.entries_per_row > kManyEntries;
+  const bool narrow = shape.band_per_entry <= kNarrowBand;
+  return {
+      {shape.is_block_triangular && !definite && !quasi_definite,
+       {"block_substitution", kDefault, "block triangular: substitution has no fill"}},
+      {definite && dense && narrow,
+       {"cholmod_supernodal", kNatural,
+        "definite, a band of large blocks: dense Cholesky factors in the given order"}},
+      {definite && dense,
+       {"cholmod_supernodal", kAmd,
+        "definite, with many entries in a row: dense Cholesky factors"}},
+      {definite && narrow,
+       {"cholmod_llt", kNatural, "definite, a narrow band: Cholesky factors in the given order"}},
+      {definite, {"cholmod_llt", kAmd, "definite, with few entries in a row: Cholesky factors"}},
+      {quasi_definite,
+       {"cholmod_ldlt", kNatural, "quasi-definite: LDL' without pivoting, in the given order"}},
+      {dense, {"umfpack", kDefault, "many entries in a row: LU by dense blocks"}},
+      {true, {"klu", kDefault, "few entries in a row, or no other solver: sparse LU without BLAS"}},
+  };
+}
+
+/// "" if a solver takes the options, or why it does not.
+std::string objection(const SolverEntry& entry, const SolverOptions& options) {
+  const auto list = [](const auto& offered) {
+    std::string names;
+    for (const auto& one : offered) names += concat(names.empty() ? "" : ", ", name_of(one));
+    return names;
+  };
+  if (!entry.claims(options.structure)) {
+    return concat(entry.name, " is not for matrices of structure \"", name_of(options.structure),
+                  "\"; it takes: ", list(entry.structures));
+  }
+  if (!entry.offers(options.ordering)) {
+    return concat(entry.name, " has no ordering \"", name_of(options.ordering),
+                  "\"; it offers: ", list(entry.orderings));
+  }
+  if (options.index_width == IndexWidth::k64 && !entry.has_64_bit_indices) {
+    return concat(entry.name, " has no 64-bit indices");
+  }
+  if (entry.name == "block_substitution" && options.block_sizes.empty()) {
+    return "block_substitution needs the sizes of the diagonal blocks; there are none";
+  }
+  return {};
 }
 
 }  // namespace
@@ -150,11 +240,27 @@ const SolverEntry& find_solver(std::string_view name) {
                             left_out.empty() ? "" : "; left out of this build:", left_out));
 }
 
-SolverChoice choose_solver(const SolverOptions& options, const SparseMatrix& /*A*/) {
-  if (options.structure == Structure::kBlockTriangular && !options.block_sizes.empty()) {
-    return {"block_substitution", Ordering::kDefault, "block triangular: there is no fill"};
+SolverChoice choose_solver(const SolverOptions& options, const SparseMatrix& A) {
+  const std::vector<SolverEntry>& suite = solver_suite();
+  for (auto& [fits, choice] : rules(options, shape_of(options, A))) {
+    if (!fits) continue;
+    const auto named = [&name = choice.name](const SolverEntry& entry) {
+      return entry.name == name;
+    };
+    const auto entry = std::find_if(suite.begin(), suite.end(), named);
+    if (entry == suite.end()) continue;
+    // Whether a matrix is block triangular is seen, not believed.
+    SolverOptions seen = options;
+    if (choice.name == "block_substitution") seen.structure = Structure::kBlockTriangular;
+    if (!objection(*entry, seen).empty()) continue;
+    SolverChoice chosen = choice;
+    if (options.ordering != Ordering::kDefault) chosen.ordering = options.ordering;
+    return chosen;
   }
-  return {"klu", Ordering::kDefault, "nothing is known that a more special solver could use"};
+  throw InvalidInput(concat("auto: no solver for structure \"", name_of(options.structure),
+                            "\" with ordering \"", name_of(options.ordering), "\"",
+                            options.index_width == IndexWidth::k64 ? " and 64-bit indices" : "",
+                            "; use ordering \"default\", or choose a solver by its name"));
 }
 
 std::unique_ptr<LinearSolver> make_solver(std::string_view name, const SolverOptions& options,
@@ -162,13 +268,12 @@ std::unique_ptr<LinearSolver> make_solver(std::string_view name, const SolverOpt
   if (name == "auto") {
     const SolverChoice choice = choose_solver(options, A);
     SolverOptions chosen = options;
-    if (chosen.ordering == Ordering::kDefault) chosen.ordering = choice.ordering;
+    chosen.ordering = choice.ordering;
     return find_solver(choice.name).make(chosen);
   }
   const SolverEntry& entry = find_solver(name);
-  if (!entry.claims(options.structure)) {
-    throw InvalidInput(concat(name, " is not for ", name_of(options.structure), " matrices"));
-  }
+  const std::string reason = objection(entry, options);
+  if (!reason.empty()) throw InvalidInput(concat("make_solver: ", reason));
   return entry.make(options);
 }
 

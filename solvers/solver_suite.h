@@ -14,7 +14,7 @@ struct SolverEntry {
   std::string name;                   ///< "klu", "cholmod_ldlt", …
   std::string sentence;               ///< what it is, for help texts
   std::string licence;                ///< of the library behind it
-  std::vector<Structure> structures;  ///< that it claims; kGeneral means any
+  std::vector<Structure> structures;  ///< that it is for
   std::vector<Ordering> orderings;    ///< that it offers, kDefault among them
   bool has_64_bit_indices = false;
   std::unique_ptr<LinearSolver> (*make)(const SolverOptions&) = nullptr;

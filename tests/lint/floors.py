@@ -13,6 +13,7 @@ LIBRARIES = {
     "suitesparse": r"(suitesparse/)?(SuiteSparse_config|SuiteSparseQR|umfpack|klu|cholmod|amd|colamd|"
                    r"camd|ccolamd|btf|spqr|cs)\w*\.(h|hpp)$",
     "lapack": r"(lapacke|lapack|cblas)\.h$",
+    "mumps": r"[sdcz]mumps_c\.h$",
     "ipopt": r"(coin|coin-or)/|Ip\w+\.hpp$",
     "cli11": r"CLI/",
     "json": r"nlohmann/",
@@ -28,9 +29,9 @@ SHARED = ("core/error.h", "core/scalar.h")  # what a floor without mechanics may
 FLOORS = {
     "core": (("core",), ("eigen",)),
     "scene": (("core", "scene"), ("eigen", "tinyxml2", "posix")),
-    "solvers": (("solvers", *SHARED), ("eigen", "suitesparse", "lapack", "ipopt")),
+    "solvers": (("solvers", *SHARED), ("eigen", "suitesparse", "lapack", "mumps", "ipopt")),
     "adjoint": (("core", "solvers", "adjoint"), ("eigen",)),
-    "examples": (EVERY_FLOOR, ("eigen", "cli11", "json", "fmt", "posix")),
+    "examples": (EVERY_FLOOR, ("eigen", "cli11", "json", "fmt", "posix", "suitesparse")),
     "tests": (EVERY_FLOOR, tuple(LIBRARIES)),
 }
 # The composition root knows every floor.
