@@ -72,8 +72,8 @@ inline void refuse_other_orderings(const char* solver, Ordering ordering,
                             "\" is not offered; offered: ", names));
 }
 
-/// Held during an analysis that may call METIS, which seeds and draws from the process's one random
-/// generator: two analyses at once would get orderings that depend on their timing.
+/// Held during an analysis that may call METIS, which seeds the process's one random generator and
+/// draws from it: two analyses at once would get orderings that depend on their timing.
 [[nodiscard]] inline std::unique_lock<std::mutex> lock_metis(Ordering ordering) {
   static std::mutex mutex;
   const bool draws = ordering == Ordering::kMetis || ordering == Ordering::kNested;

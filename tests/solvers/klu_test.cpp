@@ -3,12 +3,103 @@
 #include <gtest/gtest.h>
 
 #include "tests/solvers/random_matrices.h"
+#include "tests/solvers/solver_checks.h"
 
 namespace hbar::solvers {
 namespace {
 
 using testing::message_of;
+using testing::options_of;
 using testing::random_sparse;
+
+constexpr auto kOrderings = {Ordering::kDefault, Ordering::kNatural, Ordering::kAmd,
+                             Ordering::kColamd};
+constexpr auto kWidths = {IndexWidth::k32, IndexWidth::k64};
+
+TEST(Klu, AgreesWithDenseLuInEveryOrderingAndWidth) {
+  for (const Ordering ordering : kOrderings) {
+    for (const IndexWidth width : kWidths) {
+      SCOPED_TRACE(name_of(ordering));
+      for (const SparseMatrix& A :
+           {random_sparse(60, 3, 1), testing::random_block_lower({4, 1, 7, 12, 3}, 2),
+            testing::random_definite(50, 2, 3)}) {
+        testing::expect_agrees_with_dense(
+            *testing::factorized(make_klu, options_of(ordering, width), A), A);
+      }
+    }
+  }
+}
+
+TEST(Klu, ServesNewValuesAndNewPatterns) {
+  const SparseMatrix A = random_sparse(60, 3, 1);
+  SparseMatrix B = A;
+  B.diagonal() *= -1.5;
+  SparseMatrix zero = A;
+  zero.coeffs().setZero();
+  for (const Ordering ordering : kOrderings) {
+    for (const IndexWidth width : kWidths) {
+      const auto solver = make_klu(options_of(ordering, width));
+      testing::expect_serves_again(*solver, A, B, zero, random_sparse(90, 2, 1));
+    }
+  }
+}
+
+TEST(Klu, HeedsTheOrdering) {
+  testing::expect_heeds_ordering(make_klu, random_sparse(400, 3, 1),
+                                 {Ordering::kNatural, Ordering::kAmd, Ordering::kColamd},
+                                 Ordering::kAmd);
+  EXPECT_EQ(message_of<InvalidInput>([] { (void)make_klu(options_of(Ordering::kMetis)); }),
+            "klu: the ordering \"metis\" is not offered; offered: default, natural, amd, colamd");
+}
+
+TEST(Klu, FillsAnArrowLessByMinimumDegree) {
+  const double n = 300.0;
+  const SparseMatrix A = testing::arrow_matrix(300);
+  for (const IndexWidth width : kWidths) {
+    const FactorInfo natural =
+        testing::factorized(make_klu, options_of(Ordering::kNatural, width), A)->factor_info();
+    const FactorInfo amd =
+        testing::factorized(make_klu, options_of(Ordering::kAmd, width), A)->factor_info();
+    EXPECT_EQ(natural.entries, n * (n + 1.0));  // the diagonals of both factors count
+    EXPECT_EQ(amd.entries, 2.0 * (2.0 * n - 1.0));
+    EXPECT_LT(amd.bytes, 0.1 * natural.bytes);
+    ASSERT_TRUE(natural.flops && amd.flops);
+    EXPECT_EQ(*amd.flops, 3.0 * (n - 1.0));  // a division, a product and a difference each
+    EXPECT_NEAR(*natural.flops, 2.0 / 3.0 * n * n * n, 0.01 * *natural.flops);
+  }
+}
+
+TEST(Klu, FindsTheBlocksOfATriangularMatrixUnlessTheOrderIsGiven) {
+  // Below the diagonal blocks nothing has to be eliminated.
+  const SparseMatrix A = testing::random_block_lower({6, 6, 6, 6}, 1);
+  const auto entries_of = [&A](Ordering ordering) {
+    return testing::factorized(make_klu, options_of(ordering), A)->factor_info();
+  };
+  EXPECT_EQ(entries_of(Ordering::kAmd).entries, static_cast<double>(A.nonZeros()) + 24.0);
+  EXPECT_GT(*entries_of(Ordering::kNatural).flops, *entries_of(Ordering::kAmd).flops);
+}
+
+TEST(Klu, NamesTheRowAndColumnOfASingularMatrixWithBothWidths) {
+  const SparseMatrix A = testing::nearly_identity(20, {{11, 12, 1.0}, {12, 11, 1.0}});
+  for (const Ordering ordering : kOrderings) {
+    for (const IndexWidth width : kWidths) {
+      const auto solver = make_klu(options_of(ordering, width));
+      solver->name_unknowns([](int index) { return concat("joint ", index); });
+      solver->analyze(A);
+      const std::string message = message_of<NumericalFailure>([&] { solver->factorize(A); });
+      EXPECT_TRUE(message.find("column 11 (joint 11) is 0") != std::string::npos ||
+                  message.find("column 12 (joint 12) is 0") != std::string::npos)
+          << message;
+    }
+  }
+}
+
+TEST(Klu, GivesTheSameBitsInTwoThreads) {
+  for (const IndexWidth width : kWidths) {
+    testing::expect_the_same_in_two_threads(make_klu, options_of(Ordering::kDefault, width),
+                                            random_sparse(100, 3, 3));
+  }
+}
 
 TEST(Klu, KeepsThePivotOrderWhileItSuitsTheValues) {
   SparseMatrix A = random_sparse(40, 4, 1);

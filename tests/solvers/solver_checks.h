@@ -112,6 +112,26 @@ inline std::unique_ptr<LinearSolver> factorized(Maker make, const SolverOptions&
   return solver;
 }
 
+/// Every ordering gives factors of a size of its own, and the default is one of them.
+///
+/// @param orderings  all that are offered but the default
+/// @param usual      the one that is taken by default
+inline void expect_heeds_ordering(Maker make, const SparseMatrix& A,
+                                  const std::vector<Ordering>& orderings, Ordering usual) {
+  const auto entries_of = [&](Ordering ordering, IndexWidth width) {
+    return factorized(make, options_of(ordering, width), A)->factor_info().entries;
+  };
+  std::vector<double> entries;
+  for (const Ordering ordering : orderings) {
+    entries.push_back(entries_of(ordering, IndexWidth::k32));
+    EXPECT_EQ(entries.back(), entries_of(ordering, IndexWidth::k64)) << name_of(ordering);
+  }
+  EXPECT_EQ(entries_of(Ordering::kDefault, IndexWidth::k32), entries_of(usual, IndexWidth::k32));
+  std::sort(entries.begin(), entries.end());
+  EXPECT_EQ(std::unique(entries.begin(), entries.end()) - entries.begin(),
+            static_cast<std::ptrdiff_t>(orderings.size()));
+}
+
 /// One and many right-hand sides, plain and transposed, in place, and into part of a larger matrix.
 inline void expect_agrees_with_dense(LinearSolver& solver, const SparseMatrix& A,
                                      double tolerance = 1e-12) {

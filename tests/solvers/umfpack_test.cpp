@@ -3,9 +3,88 @@
 #include <gtest/gtest.h>
 
 #include "tests/solvers/random_matrices.h"
+#include "tests/solvers/solver_checks.h"
 
 namespace hbar::solvers {
 namespace {
+
+using testing::message_of;
+using testing::options_of;
+using testing::random_sparse;
+
+constexpr auto kOrderings = {Ordering::kDefault, Ordering::kNatural, Ordering::kAmd,
+                             Ordering::kColamd, Ordering::kMetis};
+constexpr auto kWidths = {IndexWidth::k32, IndexWidth::k64};
+
+TEST(Umfpack, AgreesWithDenseLuInEveryOrderingAndWidth) {
+  for (const Ordering ordering : kOrderings) {
+    for (const IndexWidth width : kWidths) {
+      SCOPED_TRACE(name_of(ordering));
+      for (const SparseMatrix& A :
+           {random_sparse(60, 3, 1), testing::random_block_lower({4, 1, 7, 12, 3}, 2),
+            testing::random_definite(50, 2, 3)}) {
+        testing::expect_agrees_with_dense(
+            *testing::factorized(make_umfpack, options_of(ordering, width), A), A);
+      }
+    }
+  }
+}
+
+TEST(Umfpack, ServesNewValuesAndNewPatterns) {
+  const SparseMatrix A = random_sparse(60, 3, 1);
+  SparseMatrix B = A;
+  B.diagonal() *= -1.5;
+  SparseMatrix zero = A;
+  zero.coeffs().setZero();
+  for (const Ordering ordering : kOrderings) {
+    for (const IndexWidth width : kWidths) {
+      const auto solver = make_umfpack(options_of(ordering, width));
+      testing::expect_serves_again(*solver, A, B, zero, random_sparse(90, 2, 1));
+    }
+  }
+}
+
+TEST(Umfpack, HeedsTheOrdering) {
+  const std::vector<Ordering> orderings(kOrderings.begin() + 1, kOrderings.end());
+  testing::expect_heeds_ordering(make_umfpack, random_sparse(400, 3, 1), orderings,
+                                 Ordering::kColamd);
+  EXPECT_EQ(message_of<InvalidInput>([] { (void)make_umfpack(options_of(Ordering::kNested)); }),
+            "umfpack: the ordering \"nested\" is not offered; offered: default, natural, amd, "
+            "colamd, metis");
+}
+
+TEST(Umfpack, FillsLessByMinimumDegree) {
+  const SparseMatrix A = testing::random_definite(300, 1, 2);
+  const FactorInfo natural =
+      testing::factorized(make_umfpack, options_of(Ordering::kNatural), A)->factor_info();
+  const FactorInfo amd =
+      testing::factorized(make_umfpack, options_of(Ordering::kAmd), A)->factor_info();
+  EXPECT_LT(amd.entries, 0.8 * natural.entries);
+  EXPECT_GE(amd.entries, static_cast<double>(A.nonZeros()));
+  ASSERT_TRUE(natural.flops && amd.flops);
+  EXPECT_LT(*amd.flops, 0.8 * *natural.flops);
+}
+
+TEST(Umfpack, NamesTheRowAndColumnOfASingularMatrixWithBothWidths) {
+  const SparseMatrix A = testing::nearly_identity(20, {{11, 12, 1.0}, {12, 11, 1.0}});
+  for (const Ordering ordering : kOrderings) {
+    for (const IndexWidth width : kWidths) {
+      const auto solver = make_umfpack(options_of(ordering, width));
+      solver->name_unknowns([](int index) { return concat("joint ", index); });
+      solver->analyze(A);
+      const std::string message = message_of<NumericalFailure>([&] { solver->factorize(A); });
+      EXPECT_TRUE(message.find("column 11 (joint 11) is 0") != std::string::npos ||
+                  message.find("column 12 (joint 12) is 0") != std::string::npos)
+          << message;
+    }
+  }
+}
+
+TEST(Umfpack, GivesTheSameBitsInTwoThreads) {
+  testing::expect_the_same_in_two_threads(make_umfpack, {}, random_sparse(100, 3, 3));
+  testing::expect_the_same_in_two_threads(make_umfpack, options_of(Ordering::kMetis),
+                                          random_sparse(400, 1, 3));
+}
 
 TEST(Umfpack, RefusesAStructurallySingularMatrix) {
   SparseMatrix A(3, 3);
@@ -16,7 +95,7 @@ TEST(Umfpack, RefusesAStructurallySingularMatrix) {
   A.insert(0, 2) = 1.0;
   A.makeCompressed();
   const auto solver = make_umfpack();
-  const std::string message = testing::message_of<NumericalFailure>([&] {
+  const std::string message = message_of<NumericalFailure>([&] {
     solver->analyze(A);
     solver->factorize(A);
   });
