@@ -1,0 +1,164 @@
+#include "corpus.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <system_error>
+
+#include "families.h"
+#include "hbar/core/error.h"
+#include "hbar/scene/atomic_file.h"
+#include "hbar/solvers/accuracy.h"
+#include "hbar/solvers/solver_suite.h"
+#include "matrix_market.h"
+#include "measure.h"
+#include "sidecar.h"
+
+namespace hbar::solver_benchmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A model of the corpus and how many steps it takes at each size.
+struct Row {
+  const char* source;         ///< a family's name or a scene file's without ".xml"
+  std::array<int, 3> joints;  ///< of a family; 0 for a scene
+  std::array<int, 3> steps;
+};
+
+constexpr std::array<Row, 12> kRows = {{
+    {"chain", {3, 7, 16}, {20, 50, 50}},
+    {"chain", {7, 12, 7}, {8, 30, 200}},
+    {"tree", {7, 15, 31}, {8, 20, 20}},
+    {"hand", {3, 7, 14}, {6, 12, 20}},
+    {"pendulum", {}, {50, 300, 2000}},
+    {"double_pendulum", {}, {30, 200, 1000}},
+    {"arm", {}, {20, 100, 500}},
+    {"finger", {}, {10, 50, 200}},
+    {"tumbling_box", {}, {8, 40, 150}},
+    {"rotate_box", {}, {5, 20, 60}},
+    {"flip_box", {}, {5, 20, 60}},
+    {"assemble", {}, {5, 20, 60}},
+}};
+
+bool ends_with(const std::string& text, std::string_view end) {
+  return text.size() > end.size() && text.ends_with(end);
+}
+
+/// NAME_b.mtx for NAME.mtx.
+fs::path beside(const fs::path& file, const char* end) {
+  return file.parent_path() / (file.stem().string() + end);
+}
+
+/// The structure that the numbers themselves show.
+solvers::Structure structure_of(const solvers::SparseMatrix& A) {
+  const solvers::SparseMatrix transposed = A.transpose();
+  const bool symmetric =
+      A.nonZeros() == transposed.nonZeros() &&
+      std::equal(A.outerIndexPtr(), A.outerIndexPtr() + A.cols() + 1, transposed.outerIndexPtr()) &&
+      std::equal(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros(), transposed.innerIndexPtr()) &&
+      std::equal(A.valuePtr(), A.valuePtr() + A.nonZeros(), transposed.valuePtr());
+  if (symmetric) {
+    try {
+      const auto solver =
+          solvers::make_solver("cholmod_llt", {.structure = solvers::Structure::kDefinite}, A);
+      solver->analyze(A);
+      solver->factorize(A);
+      return solvers::Structure::kDefinite;
+    } catch (const Error&) {  // not definite, or no such solver in this build
+    }
+  }
+  return solvers::Structure::kGeneral;
+}
+
+}  // namespace
+
+std::string_view name_of(CorpusSize size) {
+  constexpr std::array<std::string_view, 3> kNames = {"small", "medium", "large"};
+  return kNames[static_cast<std::size_t>(size)];
+}
+
+std::vector<Case> corpus_cases(CorpusSize size, const fs::path& scenes) {
+  const auto k = static_cast<std::size_t>(size);
+  std::vector<Case> cases;
+  for (const Row& row : kRows) {
+    for (const char* integrator : {"bdf1", "bdf2"}) {
+      for (const SystemKind system : {SystemKind::kAdjoint, SystemKind::kPeriodic,
+                                      SystemKind::kGaussNewton, SystemKind::kKkt}) {
+        Case which{.steps = row.steps[k], .integrator = integrator, .system = system};
+        if (row.joints[k] > 0) {
+          which.family = row.source;
+          which.joints = row.joints[k];
+        } else {
+          which.scene = scenes / concat(row.source, ".xml");
+        }
+        cases.push_back(std::move(which));
+      }
+    }
+  }
+  return cases;
+}
+
+void write_corpus_matrix(const BenchmarkMatrix& given, const fs::path& folder) {
+  BenchmarkMatrix matrix = given;
+  const Reference reference = find_reference(matrix);
+  if (!reference.failure.empty()) {
+    throw NumericalFailure(concat(matrix.label.name, ": ", reference.failure));
+  }
+  matrix.condition = reference.condition;
+  const std::string& name = matrix.label.name;
+  const std::string comment = concat(name, ", written by hbar ", HBAR_VERSION);
+  write_matrix(folder / (name + ".mtx"), matrix.A, comment);
+  write_vector(folder / (name + "_b.mtx"), matrix.b, "right-hand side of " + comment);
+  write_vector(folder / (name + "_x.mtx"), reference.x, "solution of " + comment);
+  const double error =
+      solvers::normwise_backward_error(matrix.A, solvers::System::kPlain, reference.x, matrix.b);
+  scene::write_file_atomically(folder / (name + ".json"), sidecar_json(matrix, error));
+}
+
+std::vector<fs::path> find_matrix_files(const fs::path& folder) {
+  std::error_code code;
+  std::set<std::string> names;
+  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
+    if (at->path().extension() == ".mtx") {
+      names.insert(at->path().stem().string());
+    }
+  }
+  if (code) {
+    throw IoError(concat(folder.string(), ": cannot be read: ", code.message()));
+  }
+  std::vector<fs::path> files;
+  for (const std::string& name : names) {
+    const bool belongs = (ends_with(name, "_b") || ends_with(name, "_x")) &&
+                         names.contains(name.substr(0, name.size() - 2));
+    if (!belongs) {
+      files.push_back(folder / (name + ".mtx"));
+    }
+  }
+  if (files.empty()) {
+    throw InvalidInput(concat(folder.string(), ": there is no Matrix Market file (NAME.mtx)"));
+  }
+  return files;
+}
+
+BenchmarkMatrix read_benchmark_matrix(const fs::path& file) {
+  BenchmarkMatrix out;
+  out.label.name = file.stem().string();
+  out.label.source = file.parent_path().filename().string();
+  out.A = read_matrix(file);
+  if (fs::exists(beside(file, ".json"))) {
+    read_sidecar(beside(file, ".json"), out);
+  } else {
+    out.options.structure = structure_of(out.A);
+  }
+  const fs::path b = beside(file, "_b.mtx");
+  out.b = fs::exists(b) ? read_vector(b, out.A.rows())
+                        : Eigen::VectorXd(out.A * Eigen::VectorXd::Ones(out.A.cols()));
+  const fs::path x = beside(file, "_x.mtx");
+  if (fs::exists(x)) {
+    out.x = read_vector(x, out.A.rows());
+  }
+  return out;
+}
+
+}  // namespace hbar::solver_benchmark

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+
+#include "cases.h"
+
+namespace hbar::solver_benchmark {
+
+/// How to measure.
+struct MeasureOptions {
+  int repeat = 3;            ///< at least so often, of which the fastest counts; ≥ 1
+  double least_time = 2e-4;  ///< s; what is shorter is repeated until so much has passed
+  int rhs = 16;              ///< right-hand sides solved at once, ≥ 1
+};
+
+/// A matrix's own numbers, and the solution that others are compared with.
+struct Reference {
+  Eigen::VectorXd x;                ///< refined beyond working precision; empty if there is none
+  std::optional<double> condition;  ///< estimate of ‖A‖₁ ‖A⁻¹‖₁
+  std::string failure;              ///< why there is no x; else empty
+};
+
+/// One solver on one matrix. Times are wall time, in seconds.
+struct Measurement {
+  std::string solver;                ///< as asked for: "auto", "klu", …
+  std::string ordering;              ///< as asked for
+  std::string chosen;                ///< by "auto": solver and, if it is not the default, ordering
+  std::string failure;               ///< why it did not solve the system; else empty, and:
+  double analyse = 0.0;              ///< the solver is made and studies the pattern
+  double factorise = 0.0;            ///< for the first time after that
+  double refactorise = 0.0;          ///< other values, same pattern
+  double solve = 0.0;                ///< A x = b
+  double solve_transposed = 0.0;     ///< Aᵀ x = b
+  double solve_many = 0.0;           ///< A X = B with MeasureOptions::rhs columns
+  double entries = 0.0;              ///< of the factors
+  double fill = 0.0;                 ///< entries over those of A
+  double bytes = 0.0;                ///< of factors and workspace
+  std::optional<double> flops;       ///< of the factorisation
+  double backward_error = 0.0;       ///< normwise, of A x = b
+  double componentwise_error = 0.0;  ///< componentwise backward error, of A x = b
+  double transposed_error = 0.0;     ///< normwise backward error, of Aᵀ x = b
+  std::optional<double> forward_error;  ///< ‖x − reference‖∞ / ‖reference‖∞
+
+  [[nodiscard]] bool solved() const { return failure.empty(); }
+  /// analyse + factorise + solve: what one system costs that was never seen before.
+  [[nodiscard]] double total() const { return analyse + factorise + solve; }
+};
+
+/// Solves by KLU and refines; estimates the condition unless the matrix came with it.
+[[nodiscard]] Reference find_reference(const BenchmarkMatrix& matrix);
+
+/// Measures a solver. What the solver refuses is not thrown but told in Measurement::failure.
+///
+/// @param solver  a name of solver_suite(), or "auto"
+[[nodiscard]] Measurement measure(const BenchmarkMatrix& matrix, const Reference& reference,
+                                  const std::string& solver, solvers::Ordering ordering,
+                                  const MeasureOptions& options);
+
+}  // namespace hbar::solver_benchmark

@@ -1,0 +1,108 @@
+#include "sidecar.h"
+
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "hbar/core/error.h"
+#include "hbar/scene/text_file.h"
+
+namespace hbar::solver_benchmark {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using solvers::Structure;
+
+constexpr std::array kStructures = {Structure::kGeneral, Structure::kBlockTriangular,
+                                    Structure::kPeriodic, Structure::kDefinite,
+                                    Structure::kQuasiDefinite};
+
+/// Block sizes as runs of (how many, of what size): most are equal.
+Json runs(const std::vector<int>& sizes) {
+  Json out = Json::array();
+  for (const int size : sizes) {
+    if (out.empty() || out.back()[1] != size) {
+      out.push_back({0, size});
+    }
+    out.back()[0] = out.back()[0].get<int>() + 1;
+  }
+  return out;
+}
+
+std::vector<int> sizes(const Json& runs_of_blocks) {
+  std::vector<int> out;
+  for (const Json& run : runs_of_blocks) {
+    const int count = run.at(0).get<int>();
+    if (count < 1 || run.at(1).get<int>() < 1) {
+      throw InvalidInput("blocks: counts and sizes are at least 1");
+    }
+    out.insert(out.end(), static_cast<std::size_t>(count), run.at(1).get<int>());
+  }
+  return out;
+}
+
+Structure find_structure(const std::string& name) {
+  std::string known;
+  for (const Structure structure : kStructures) {
+    if (name_of(structure) == name) {
+      return structure;
+    }
+    known += concat(' ', name_of(structure));
+  }
+  throw InvalidInput(concat("there is no structure \"", name, "\"; known:", known));
+}
+
+void set(const Json& json, BenchmarkMatrix& matrix) {
+  MatrixLabel& label = matrix.label;
+  label.source = json.at("source");
+  label.family = json.at("family");
+  label.system = json.at("system");
+  label.integrator = json.at("integrator");
+  label.dof = json.at("n");
+  label.steps = json.at("T");
+  label.h = json.at("h");
+  matrix.options.structure = find_structure(json.at("structure"));
+  matrix.options.block_sizes = sizes(json.at("blocks"));
+  if (json.at("condition").is_number()) {
+    matrix.condition = json.at("condition").get<double>();
+  }
+  const std::vector<int>& blocks = matrix.options.block_sizes;
+  const auto rows = std::accumulate(blocks.begin(), blocks.end(), Eigen::Index{0});
+  if (json.at("rows") != matrix.A.rows() || (!blocks.empty() && rows != matrix.A.rows())) {
+    throw InvalidInput(
+        concat("rows and blocks are not those of a matrix of ", matrix.A.rows(), " rows"));
+  }
+}
+
+}  // namespace
+
+std::string sidecar_json(const BenchmarkMatrix& matrix, double backward_error) {
+  const MatrixLabel& label = matrix.label;
+  const Json out = {{"hbar", HBAR_VERSION},
+                    {"name", label.name},
+                    {"source", label.source},
+                    {"family", label.family},
+                    {"n", label.dof},
+                    {"T", label.steps},
+                    {"h", label.h},
+                    {"integrator", label.integrator},
+                    {"system", label.system},
+                    {"structure", std::string(name_of(matrix.options.structure))},
+                    {"blocks", runs(matrix.options.block_sizes)},
+                    {"rows", matrix.A.rows()},
+                    {"entries", matrix.A.nonZeros()},
+                    {"condition", matrix.condition ? Json(*matrix.condition) : Json()},
+                    {"solution_backward_error", backward_error}};
+  return out.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+void read_sidecar(const std::filesystem::path& file, BenchmarkMatrix& matrix) {
+  try {
+    set(Json::parse(scene::read_text_file(file)), matrix);
+  } catch (const Json::exception& error) {
+    throw InvalidInput(concat(file.string(), ": not what `hbar corpus` writes: ", error.what()));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(concat(file.string(), ": ", error.what()));
+  }
+}
+
+}  // namespace hbar::solver_benchmark
