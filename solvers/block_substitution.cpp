@@ -5,26 +5,6 @@
 #include <utility>
 
 namespace hbar::solvers {
-namespace {
-
-/// x ← A_b⁻¹ x or A_b⁻ᵀ x; one column takes Eigen's faster path for vectors.
-void solve_block(const BlockFactors& factors, System system, MatrixSpan X_b) {
-  const auto solve_in_place = [&](auto X) {
-    if (system == System::kPlain) {
-      X = factors.solve(X);
-    } else {
-      X = factors.transpose().solve(X);
-    }
-  };
-  if (X_b.cols() == 1) {
-    solve_in_place(X_b.col(0));
-  } else {
-    solve_in_place(X_b);
-  }
-}
-
-}  // namespace
-
 BlockSubstitution::BlockSubstitution(std::vector<int> block_sizes) {
   if (block_sizes.empty()) {
     throw InvalidInput("block_substitution: no block sizes; expected at least one");
@@ -97,6 +77,36 @@ void BlockSubstitution::do_analyze() {
           static_cast<int>(std::lower_bound(first, last, end_row) - A.innerIndexPtr());
     }
   }
+  panels_.resize(factors_.size());
+  diagonals_.resize(factors_.size());
+  for (int b = 0; b < block_count(); ++b) {
+    panels_[static_cast<std::size_t>(b)] = find_panel(b, true);
+    diagonals_[static_cast<std::size_t>(b)] = find_panel(b, false);
+  }
+}
+
+BlockSubstitution::Panel BlockSubstitution::find_panel(int block, bool below) const {
+  const auto part = [&](int j) { return below ? below_block(j) : in_block(j); };
+  const int begin = block_begin(block);
+  const SparseColumn first = part(begin);
+  if (first.count == 0 || first.rows[first.count - 1] - first.rows[0] != first.count - 1) return {};
+  const int* outer = matrix().outerIndexPtr();
+  for (int j = begin + 1; j < begin + block_size(block); ++j) {
+    const SparseColumn column = part(j);
+    // Columns of equal length lie one stride apart.
+    if (column.count != first.count || column.rows[0] != first.rows[0] ||
+        column.rows[column.count - 1] != first.rows[first.count - 1] ||
+        outer[j + 1] - outer[j] != outer[begin + 1] - outer[begin]) {
+      return {};
+    }
+  }
+  return {first.rows[0], first.count};
+}
+
+BlockSubstitution::DenseView BlockSubstitution::dense_view(int block, const Panel& panel,
+                                                           const double* first_value) const {
+  const int* outer = matrix().outerIndexPtr() + block_begin(block);
+  return {first_value, panel.rows, block_size(block), Eigen::OuterStride<>(outer[1] - outer[0])};
 }
 
 void BlockSubstitution::do_factorize() {
@@ -134,12 +144,11 @@ void BlockSubstitution::factorize_block(int block) {
   }
 }
 
-void BlockSubstitution::do_solve(System system, MatrixSpan X) {
-  if (system == System::kPlain) {
-    substitute_forward(X);
-  } else {
-    substitute_backward(X);
-  }
+void BlockSubstitution::do_solve(System system, MatrixSpan X) { substitute(system, X, nullptr); }
+
+bool BlockSubstitution::do_solve_with_residuals(System system, MatrixSpan X, MatrixSpan R) {
+  substitute(system, X, &R);
+  return true;
 }
 
 SparseColumn BlockSubstitution::below_block(int column) const {
@@ -148,31 +157,114 @@ SparseColumn BlockSubstitution::below_block(int column) const {
           matrix().outerIndexPtr()[column + 1] - begin};
 }
 
-void BlockSubstitution::substitute_forward(MatrixSpan X) const {
-  for (int b = 0; b < block_count(); ++b) {
-    const int first = block_begin(b);
-    const int size = block_size(b);
-    auto X_b = X.middleRows(first, size);
-    if ((X_b.array() == 0.0).all()) continue;
-    solve_block(factors_[static_cast<std::size_t>(b)], System::kPlain, X_b);
-    for (Eigen::Index r = 0; r < X.cols(); ++r) {
-      double* x = X.col(r).data();
-      for (int j = first; j < first + size; ++j) below_block(j).subtract_from(x, x[j]);
+SparseColumn BlockSubstitution::in_block(int column) const {
+  const int begin = matrix().outerIndexPtr()[column];
+  return {matrix().innerIndexPtr() + begin, matrix().valuePtr() + begin,
+          below_[static_cast<std::size_t>(column)] - begin};
+}
+
+/// Each block row's right-hand side less what is known of it is what its diagonal block is solved
+/// with; what that leaves is the row's residual.
+void BlockSubstitution::substitute(System system, MatrixSpan X, MatrixSpan* R) {
+  const bool forward = system == System::kPlain;
+  for (int i = 0; i < block_count(); ++i) {
+    const int b = forward ? i : block_count() - 1 - i;
+    if (!forward) gather_below(b, X);
+    auto X_b = X.middleRows(block_begin(b), block_size(b));
+    if ((X_b.array() == 0.0).all()) {
+      if (R != nullptr) R->middleRows(block_begin(b), block_size(b)).setZero();
+      continue;
+    }
+    if (R != nullptr) R->middleRows(block_begin(b), block_size(b)) = X_b;
+    solve_block(b, system, X_b);
+    if (R != nullptr) {
+      subtract_diagonal(b, system, X_b, R->middleRows(block_begin(b), block_size(b)));
+    }
+    if (forward) subtract_below(b, X);
+  }
+}
+
+/// x ← A_b⁻¹ x or A_b⁻ᵀ x.
+void BlockSubstitution::solve_block(int block, System system, MatrixSpan X_b) {
+  const BlockFactors& factors = factors_[static_cast<std::size_t>(block)];
+  const auto& lu = factors.matrixLU();
+  const auto& destination = factors.permutationP().indices();
+  const int size = block_size(block);
+  work_.resize(size, 1);
+  auto y = work_.col(0);
+  for (Eigen::Index r = 0; r < X_b.cols(); ++r) {
+    auto x = X_b.col(r);
+    if (system == System::kPlain) {
+      for (int i = 0; i < size; ++i) y[destination[i]] = x[i];
+      lu.triangularView<Eigen::UnitLower>().solveInPlace(y);
+      lu.triangularView<Eigen::Upper>().solveInPlace(y);
+      x = y;
+    } else {
+      y = x;
+      lu.transpose().triangularView<Eigen::Lower>().solveInPlace(y);
+      lu.transpose().triangularView<Eigen::UnitUpper>().solveInPlace(y);
+      for (int i = 0; i < size; ++i) x[i] = y[destination[i]];
     }
   }
 }
 
-void BlockSubstitution::substitute_backward(MatrixSpan X) const {
-  for (int b = block_count() - 1; b >= 0; --b) {
-    const int first = block_begin(b);
-    const int size = block_size(b);
-    for (Eigen::Index r = 0; r < X.cols(); ++r) {
-      double* x = X.col(r).data();
-      for (int j = first; j < first + size; ++j) x[j] -= below_block(j).dot(x);
+/// r ← r − A_b x or r − A_bᵀ x.
+void BlockSubstitution::subtract_diagonal(int block, System system, const MatrixView& X_b,
+                                          MatrixSpan R_b) const {
+  const Panel& dense = diagonals_[static_cast<std::size_t>(block)];
+  const int first = block_begin(block);
+  if (dense.rows == block_size(block)) {
+    const DenseView A = dense_view(block, dense, in_block(first).values);
+    if (system == System::kPlain) {
+      R_b.noalias() -= A * X_b;
+    } else {
+      R_b.noalias() -= A.transpose() * X_b;
     }
-    auto X_b = X.middleRows(first, size);
-    if ((X_b.array() == 0.0).all()) continue;
-    solve_block(factors_[static_cast<std::size_t>(b)], System::kTransposed, X_b);
+    return;
+  }
+  for (Eigen::Index r = 0; r < X_b.cols(); ++r) {
+    // Entries hold rows of the whole matrix: those of the block begin at `first`.
+    double* residual = R_b.col(r).data() - first;
+    const double* x = X_b.col(r).data() - first;
+    for (int j = first; j < first + block_size(block); ++j) {
+      if (system == System::kPlain) {
+        in_block(j).subtract_from(residual, x[j]);
+      } else {
+        residual[j] -= in_block(j).dot(x);
+      }
+    }
+  }
+}
+
+/// Takes what a solved block adds to the rows below it off their right-hand sides.
+void BlockSubstitution::subtract_below(int block, MatrixSpan X) const {
+  const Panel& dense = panels_[static_cast<std::size_t>(block)];
+  const int first = block_begin(block);
+  if (dense.rows > 0) {
+    X.middleRows(dense.first_row, dense.rows).noalias() -=
+        dense_view(block, dense, below_block(first).values) *
+        X.middleRows(first, block_size(block));
+    return;
+  }
+  for (Eigen::Index r = 0; r < X.cols(); ++r) {
+    double* x = X.col(r).data();
+    for (int j = first; j < first + block_size(block); ++j) below_block(j).subtract_from(x, x[j]);
+  }
+}
+
+/// Takes what the solved rows below add in the transposed system off a block's right-hand side.
+void BlockSubstitution::gather_below(int block, MatrixSpan X) const {
+  const Panel& dense = panels_[static_cast<std::size_t>(block)];
+  const int first = block_begin(block);
+  if (dense.rows > 0) {
+    X.middleRows(first, block_size(block)).noalias() -=
+        dense_view(block, dense, below_block(first).values).transpose() *
+        X.middleRows(dense.first_row, dense.rows);
+    return;
+  }
+  for (Eigen::Index r = 0; r < X.cols(); ++r) {
+    double* x = X.col(r).data();
+    for (int j = first; j < first + block_size(block); ++j) x[j] -= below_block(j).dot(x);
   }
 }
 

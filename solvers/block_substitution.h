@@ -40,21 +40,41 @@ class BlockSubstitution final : public LinearSolver {
   void do_analyze() override;
   void do_factorize() override;
   void do_solve(System system, MatrixSpan X) override;
+  bool do_solve_with_residuals(System system, MatrixSpan X, MatrixSpan R) override;
   void factorize_block(int block);
-  void substitute_forward(MatrixSpan X) const;
-  void substitute_backward(MatrixSpan X) const;
+  void substitute(System system, MatrixSpan X, MatrixSpan* R);
+  void solve_block(int block, System system, MatrixSpan X_b);
+  void subtract_diagonal(int block, System system, const MatrixView& X_b, MatrixSpan R_b) const;
+  void subtract_below(int block, MatrixSpan X) const;
+  void gather_below(int block, MatrixSpan X) const;
   [[nodiscard]] SparseColumn below_block(int column) const;
+  [[nodiscard]] SparseColumn in_block(int column) const;
   [[nodiscard]] int block_of(int row) const;
   [[nodiscard]] int block_begin(int block) const { return begin_[static_cast<std::size_t>(block)]; }
   [[nodiscard]] int block_size(int block) const {
     return begin_[static_cast<std::size_t>(block) + 1] - block_begin(block);
   }
 
+  /// Entries of a block column as a dense matrix: where all of its columns have the same rows,
+  /// without a gap.
+  struct Panel {
+    int first_row = 0;
+    int rows = 0;  // 0: no such panel
+  };
+  using DenseView = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+  [[nodiscard]] Panel find_panel(int block, bool below) const;
+  /// @param first_value  of the block's first column
+  [[nodiscard]] DenseView dense_view(int block, const Panel& panel,
+                                     const double* first_value) const;
+
   std::vector<int> begin_;             // first row of each block, and the number of rows
   std::vector<int> below_;             // first entry of each column below its diagonal block
+  std::vector<Panel> panels_;          // of each block column, below its diagonal block
+  std::vector<Panel> diagonals_;       // of each block column, its diagonal block
   std::vector<BlockFactors> factors_;  // of each diagonal block
   std::vector<char> adopted_;          // factors_[b] was handed in and is not to be computed
   Eigen::MatrixXd block_;              // a diagonal block, dense
+  Eigen::MatrixXd work_;               // right-hand sides of a block
 };
 
 /// A block substitution as a general solver.

@@ -25,6 +25,11 @@ bool same_pattern(const SparseMatrix& A, const SparseMatrix& B) {
          std::equal(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros(), B.innerIndexPtr());
 }
 
+SparseColumn whole_column(const SparseMatrix& A, int j) {
+  const int begin = A.outerIndexPtr()[j];
+  return {A.innerIndexPtr() + begin, A.valuePtr() + begin, A.outerIndexPtr()[j + 1] - begin};
+}
+
 const char* symbol(System system) { return system == System::kPlain ? "A x = b" : "A^T x = b"; }
 
 }  // namespace
@@ -102,28 +107,26 @@ void LinearSolver::factorize(const SparseMatrix& A) {
 
 /// Norms and scales of matrix_; refuses entries that are not finite.
 void LinearSolver::measure_matrix() {
-  const int* begin = matrix_.outerIndexPtr();
-  const int* rows = matrix_.innerIndexPtr();
-  const double* values = matrix_.valuePtr();
   row_scale_.setZero();
   row_sum_.setZero();
   norm_one_ = 0.0;
   for (int j = 0; j < matrix_.cols(); ++j) {
-    double column_sum = 0.0;
-    for (int k = begin[j]; k < begin[j + 1]; ++k) {
-      const double magnitude = std::abs(values[k]);
-      if (!std::isfinite(magnitude)) {
-        throw NumericalFailure(concat(name(), ": factorize: the entry in ", named("row", rows[k]),
-                                      ", ", named("column", j), " is ", values[k],
-                                      "; check the state the matrix was computed at"));
-      }
-      row_scale_[rows[k]] = std::max(row_scale_[rows[k]], magnitude);
-      row_sum_[rows[k]] += magnitude;
-      column_sum += magnitude;
-    }
+    const double column_sum = whole_column(matrix_, j).measure(row_scale_.data(), row_sum_.data());
+    if (!std::isfinite(column_sum)) throw_not_finite(j);
     norm_one_ = std::max(norm_one_, column_sum);
   }
   norm_inf_ = row_sum_.maxCoeff();
+}
+
+/// Names the entry of a column that is not finite; returns if there is none (their sum overflowed).
+void LinearSolver::throw_not_finite(int column) const {
+  for (SparseMatrix::InnerIterator it(matrix_, column); it; ++it) {
+    if (std::isfinite(it.value())) continue;
+    throw NumericalFailure(concat(name(), ": factorize: the entry in ",
+                                  named("row", static_cast<int>(it.row())), ", ",
+                                  named("column", column), " is ", it.value(),
+                                  "; check the state the matrix was computed at"));
+  }
 }
 
 /// Largest magnitude of each column of the row-scaled matrix.
@@ -195,14 +198,20 @@ void LinearSolver::solve(System system, const MatrixView& B, MatrixSpan X) {
   }
   if (X.data() == B.data() && X.size() > 0) {
     kept_rhs_ = B;
-    do_solve(system, X);
+    solve_in_place(system, X);
     check_solution(system, kept_rhs_, X);
   } else {
     X = B;
-    do_solve(system, X);
+    solve_in_place(system, X);
     check_solution(system, B, X);
   }
   statistics_.solves += static_cast<int>(B.cols());
+}
+
+void LinearSolver::solve_in_place(System system, MatrixSpan X) {
+  residuals_.resize(X.rows(), X.cols());
+  has_residuals_ = do_solve_with_residuals(system, X, residuals_);
+  if (!has_residuals_) do_solve(system, X);
 }
 
 /// Leaves b − A x in residual_, and returns it scaled; not a number if x is not finite.
@@ -210,26 +219,33 @@ double LinearSolver::scaled_residual(System system, const VectorView<double>& b,
                                      const VectorView<double>& x) {
   residual_ = b;
   for (int j = 0; j < matrix_.cols(); ++j) {
-    const int begin = matrix_.outerIndexPtr()[j];
-    const SparseColumn column = {matrix_.innerIndexPtr() + begin, matrix_.valuePtr() + begin,
-                                 matrix_.outerIndexPtr()[j + 1] - begin};
+    const SparseColumn column = whole_column(matrix_, j);
     if (system == System::kTransposed) {
       residual_[j] -= column.dot(x.data());
     } else if (x[j] != 0.0) {
       column.subtract_from(residual_.data(), x[j]);
     }
   }
+  return scaled(system, residual_, b, x);
+}
+
+double LinearSolver::scaled(System system, const VectorView<double>& residual,
+                            const VectorView<double>& b, const VectorView<double>& x) const {
   if (!x.allFinite()) return std::numeric_limits<double>::quiet_NaN();
   const double norm = system == System::kPlain ? norm_inf_ : norm_one_;
   const double size = norm * x.lpNorm<Eigen::Infinity>() + b.lpNorm<Eigen::Infinity>();
-  return size > 0.0 ? residual_.lpNorm<Eigen::Infinity>() / size : 0.0;
+  return size > 0.0 ? residual.lpNorm<Eigen::Infinity>() / size : 0.0;
 }
 
 /// Refines a solution that needs it and refuses one that is wrong.
 void LinearSolver::check_solution(System system, const MatrixView& B, MatrixSpan X) {
   for (Eigen::Index j = 0; j < B.cols(); ++j) {
-    double residual = scaled_residual(system, B.col(j), X.col(j));
-    if (residual > bounds_.refine_above) ++statistics_.refinements;
+    double residual = has_residuals_ ? scaled(system, residuals_.col(j), B.col(j), X.col(j))
+                                     : scaled_residual(system, B.col(j), X.col(j));
+    if (residual > bounds_.refine_above) {
+      ++statistics_.refinements;
+      if (has_residuals_) residual_ = residuals_.col(j);
+    }
     for (int i = 0; i < bounds_.max_refinements && residual > bounds_.refine_above; ++i) {
       do_solve(system, residual_);
       refined_ = X.col(j) + residual_;

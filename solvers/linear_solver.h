@@ -152,6 +152,14 @@ class LinearSolver {
   ///
   /// @param X  finite; columns contiguous  [n x r]
   virtual void do_solve(System system, MatrixSpan X) = 0;
+  /// The same, and leaves the residuals B − A X (or B − Aᵀ X), for solvers that come by them while
+  /// they solve; others return false and leave X as it is.
+  ///
+  /// @param X  as in do_solve  [n x r]
+  /// @param R  residuals       [n x r]
+  virtual bool do_solve_with_residuals(System /*system*/, MatrixSpan /*X*/, MatrixSpan /*R*/) {
+    return false;
+  }
 
   /// The matrix last analysed, with the values last factorised  [n x n]
   [[nodiscard]] const SparseMatrix& matrix() const { return matrix_; }
@@ -188,10 +196,14 @@ class LinearSolver {
 
  private:
   void measure_matrix();
+  void throw_not_finite(int column) const;
   void measure_columns();
   void refuse_unusable_pattern(const SparseMatrix& A) const;
   void check_solution(System system, const MatrixView& B, MatrixSpan X);
+  void solve_in_place(System system, MatrixSpan X);
   double scaled_residual(System system, const VectorView<double>& b, const VectorView<double>& x);
+  double scaled(System system, const VectorView<double>& residual, const VectorView<double>& b,
+                const VectorView<double>& x) const;
 
   SparseMatrix matrix_;
   std::function<std::string(int)> name_of_;
@@ -201,6 +213,8 @@ class LinearSolver {
   Eigen::VectorXd residual_;
   Eigen::VectorXd refined_;
   Eigen::MatrixXd kept_rhs_;
+  Eigen::MatrixXd residuals_;  // of the last solve, if has_residuals_
+  bool has_residuals_ = false;
   double norm_inf_ = 0.0;
   double norm_one_ = 0.0;
   bool analyzed_ = false;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 
 namespace hbar::solvers {
 
@@ -35,6 +37,28 @@ struct SparseColumn {
     double sum = 0.0;
     for (int k = 0; k < count; ++k) sum += values[k] * y[rows[k]];
     return sum;
+  }
+
+  /// Raises `largest` and `sum` of the column's rows by the magnitudes of its entries.
+  ///
+  /// @param largest, sum  begins of dense vectors with all the column's rows
+  /// @returns  sum of all magnitudes; not finite if an entry is not
+  double measure(double* largest, double* sum) const {
+    if (has_no_gap()) {
+      const auto magnitudes = Eigen::Map<const Eigen::ArrayXd>(values, count).abs();
+      Eigen::Map<Eigen::ArrayXd> rows_largest(largest + rows[0], count);
+      rows_largest = rows_largest.max(magnitudes);
+      Eigen::Map<Eigen::ArrayXd>(sum + rows[0], count) += magnitudes;
+      return magnitudes.sum();
+    }
+    double total = 0.0;
+    for (int k = 0; k < count; ++k) {
+      const double magnitude = std::abs(values[k]);
+      largest[rows[k]] = std::max(largest[rows[k]], magnitude);
+      sum[rows[k]] += magnitude;
+      total += magnitude;
+    }
+    return total;
   }
 
  private:

@@ -273,6 +273,7 @@ class WrongByAFactor final : public LinearSolver {
  public:
   explicit WrongByAFactor(double factor) : factor_(factor) {}
   [[nodiscard]] std::string name() const override { return "wrong"; }
+  [[nodiscard]] FactorInfo factor_info() const override { return {}; }
 
  private:
   void do_analyze() override {}
@@ -301,13 +302,19 @@ TEST(ResidualCheck, ConvictsASilentlyWrongSolution) {
             "wrong: the scaled residual of A x = b, right-hand side 0, is 0.142857 after "
             "refinement; allowed: 1e-10 (3 x 3 matrix); try another solver, or bring the unknowns "
             "to similar sizes");
-  EXPECT_NE(solve_identity(1.0 + 1e-4), "");
+  EXPECT_NE(solve_identity(1.0 + 1e-2), "");  // three refinements leave 1e-8
 }
 
 TEST(ResidualCheck, ConvictsSolutionsThatAreNotNumbers) {
   EXPECT_NE(solve_identity(std::numeric_limits<double>::quiet_NaN()).find("is nan"),
             std::string::npos);
   EXPECT_NE(solve_identity(std::numeric_limits<double>::infinity()), "");
+}
+
+TEST(ResidualCheck, RefinesAsLongAsThatHelps) {
+  Eigen::VectorXd x;
+  EXPECT_EQ(solve_identity(1.0 + 1e-4, nullptr, &x), "");
+  EXPECT_LT((x - Eigen::VectorXd::Ones(3)).norm(), 1e-13);
 }
 
 TEST(ResidualCheck, RefinesWhereOneStepIsEnough) {
@@ -326,8 +333,8 @@ TEST(ResidualCheck, HasBoundsThatCanBeSet) {
   EXPECT_EQ(message_of<InvalidInput>([&] {
               solver.set_residual_bounds({1e-14, 0.0});
             }),
-            "wrong: residual bounds: refine_above is 1e-14 and refuse_above 0; expected 0 or more, "
-            "and more than 0");
+            "wrong: residual bounds: refine_above is 1e-14, refuse_above 0 and max_refinements 3; "
+            "expected 0 or more, more than 0, and 0 or more");
 }
 
 }  // namespace
