@@ -5,4 +5,4 @@
 // planted: third-party
 #include <gtest/gtest.h>
 // planted: third-party
-#include <suitesparse/umfpack.h>
+#include <lapacke.h>
