@@ -116,9 +116,12 @@ class EigenSparseLu final : public LinearSolver {
   void do_solve(System system, MatrixSpan X) override {
     if (X.cols() == 0) return;
     try {
+      // Eigen's substitutions take columns to be contiguous to each other, which those of X need
+      // not be.
       if (system == System::kPlain) {
         const Eigen::MatrixXd scaled = scale_.asDiagonal() * X;
-        X = lu_.solve(scaled);
+        const Eigen::MatrixXd solutions = lu_.solve(scaled);
+        X = solutions;
       } else {
         const Eigen::MatrixXd solutions = lu_.transpose().solve(X);
         X = scale_.asDiagonal() * solutions;

@@ -22,9 +22,9 @@ constexpr int kFactorize = 2;
 constexpr int kSolve = 3;
 constexpr int kWorldCommunicator = -987654;
 
-// MUMPS' codes for the kind of matrix.
+// MUMPS' codes for the kind of matrix. Its own for definite ones, 1, cannot tell null pivots: they
+// are symmetric ones that are hardly pivoted.
 constexpr int kUnsymmetric = 0;
-constexpr int kPositiveDefinite = 1;
 constexpr int kSymmetric = 2;
 
 // Workspace beyond MUMPS' estimate, in percent, at the first and at later tries.
@@ -34,11 +34,6 @@ constexpr std::array<int, 3> kHeadroom = {20, 100, 400};
 std::mutex& mumps_mutex() {
   static std::mutex mutex;
   return mutex;
-}
-
-int kind_of(Structure structure) {
-  if (structure == Structure::kDefinite) return kPositiveDefinite;
-  return structure == Structure::kQuasiDefinite ? kSymmetric : kUnsymmetric;
 }
 
 /// ICNTL(7): 1 takes the order of perm_in, 7 leaves the choice to MUMPS.
@@ -53,7 +48,9 @@ int code_of(Ordering ordering) {
 class Mumps final : public LinearSolver {
  public:
   explicit Mumps(const SolverOptions& options)
-      : kind_(kind_of(options.structure)), ordering_(code_of(options.ordering)) {}
+      : ordering_(code_of(options.ordering)),
+        is_definite_(options.structure == Structure::kDefinite),
+        is_symmetric_(is_definite_ || options.structure == Structure::kQuasiDefinite) {}
   Mumps(const Mumps&) = delete;
   Mumps& operator=(const Mumps&) = delete;
   ~Mumps() override { release(); }
@@ -62,12 +59,12 @@ class Mumps final : public LinearSolver {
   [[nodiscard]] FactorInfo factor_info() const override { return info_; }
 
  private:
-  [[nodiscard]] bool needs_symmetry() const override { return kind_ != kUnsymmetric; }
+  [[nodiscard]] bool needs_symmetry() const override { return is_symmetric_; }
 
   void do_analyze() override {
     release();
     id_ = {};
-    id_.sym = kind_;
+    id_.sym = is_symmetric_ ? kSymmetric : kUnsymmetric;
     id_.par = 1;
     id_.comm_fortran = kWorldCommunicator;
     call(kInitialize);
@@ -95,10 +92,9 @@ class Mumps final : public LinearSolver {
     }
     const int status = id_.infog[0];
     if (status == -10) throw_rank(id_.infog[1]);
-    if (status == -40) throw_indefinite();
     if (status < 0) throw_status("factorize");
     if (id_.infog[27] > 0) throw_null_pivot(id_.pivnul_list[0] - 1);
-    if (kind_ == kPositiveDefinite && id_.infog[11] > 0) throw_indefinite();
+    if (is_definite_ && id_.infog[11] > 0) throw_indefinite();
     measure();
   }
 
@@ -131,7 +127,7 @@ class Mumps final : public LinearSolver {
     for (int j = 0; j < size(); ++j) {
       for (int k = matrix().outerIndexPtr()[j]; k < matrix().outerIndexPtr()[j + 1]; ++k) {
         const int row = matrix().innerIndexPtr()[k];
-        if (kind_ != kUnsymmetric && row < j) continue;
+        if (is_symmetric_ && row < j) continue;
         rows_.push_back(row + 1);
         columns_.push_back(j + 1);
         from_.push_back(k);
@@ -146,11 +142,13 @@ class Mumps final : public LinearSolver {
     for (int stream = 1; stream <= 3; ++stream) icntl(stream) = -1;
     icntl(4) = 0;  // no messages
     // A matching of rows and columns is for matrices without a diagonal; by pattern alone.
-    icntl(6) = kind_ == kUnsymmetric && !has_diagonal() ? 1 : 0;
+    icntl(6) = !is_symmetric_ && !has_diagonal() ? 1 : 0;
     icntl(7) = ordering_;
     icntl(10) = 0;  // no refinement: LinearSolver has its own
     icntl(24) = 1;  // tell null pivots
     id_.cntl[2] = kPivotFloor;
+    // The diagonal of a definite matrix will do; with 0 MUMPS would not tell null pivots, either.
+    if (is_definite_) id_.cntl[0] = 1e-10;
     id_.n = size();
     id_.nnz = static_cast<MUMPS_INT8>(rows_.size());
     id_.irn = rows_.data();
@@ -174,9 +172,10 @@ class Mumps final : public LinearSolver {
     // A negative number counts millions.
     const double entries = id_.infog[28];
     info_.entries = entries >= 0.0 ? entries : -1e6 * entries;
-    info_.bytes = 1e6 * static_cast<double>(id_.infog[21]);
+    // Whole megabytes.
+    info_.bytes = std::max(1e6 * static_cast<double>(id_.infog[21]), 8.0 * info_.entries);
     info_.flops = id_.rinfog[2];
-    if (kind_ != kUnsymmetric) {
+    if (is_symmetric_) {
       const int negative = id_.infog[11];
       info_.inertia = Inertia{.positive = size() - negative, .negative = negative, .zero = 0};
     }
@@ -215,8 +214,9 @@ class Mumps final : public LinearSolver {
   /// MUMPS' manual counts from 1.
   [[nodiscard]] int& icntl(int number) { return id_.icntl[number - 1]; }
 
-  int kind_;
   int ordering_;
+  bool is_definite_;
+  bool is_symmetric_;
   bool is_open_ = false;
   DMUMPS_STRUC_C id_ = {};
   std::vector<int> rows_;
