@@ -6,11 +6,12 @@
 set -eu
 
 build="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev coinor-libipopt-dev
-       libtinyxml2-dev libcli11-dev nlohmann-json3-dev libfmt-dev"
+       liblapack-dev libmumps-seq-dev libtinyxml2-dev libcli11-dev nlohmann-json3-dev libfmt-dev"
 test="python3 git libgtest-dev"
 # Left out with a message where the distribution has none: one of each line is enough.
 optional="libmujoco-dev:the_comparison_with_MuJoCo
-          clang-format-14|clang-format:the_format_check"
+          clang-format-14|clang-format:the_format_check
+          gnuplot-nox|gnuplot:the_figures_of_hbar_solvers"
 
 installed() {
   dpkg-query -W -f '${Status}\n' "$1" 2>/dev/null | grep -q '^install ok installed'

@@ -7,9 +7,13 @@
 #include "hbar/scene/build_model.h"
 #include "hbar/scene/read_xml.h"
 #include "hbar/solvers/klu.h"
+#ifdef STRANGER_HAS_SUITE
+#include "hbar/solvers/solver_suite.h"
+#endif
 
 // What a stranger does first: a pendulum in C++ and one from a scene, a simulation, its gradient.
-// Exits with 0 if the gradient is that of central differences.
+// Exits with 0 if the gradient is that of central differences, and every solver of the suite, where
+// that is there, solves a small system.
 
 namespace {
 
@@ -39,6 +43,34 @@ bool gradient_is_right(const hbar::Model& model) {
   return std::abs(slope - difference) < 1e-8;
 }
 
+#ifdef STRANGER_HAS_SUITE
+bool solvers_solve() {
+  hbar::solvers::SparseMatrix A(3, 3);
+  for (int i = 0; i < 3; ++i) A.insert(i, i) = 2.0;
+  for (int i = 0; i < 2; ++i) A.insert(i + 1, i) = A.insert(i, i + 1) = -1.0;
+  A.makeCompressed();
+  std::vector<std::string> names = {"auto"};
+  for (const auto& entry : hbar::solvers::solver_suite()) {
+    if (entry.claims(hbar::solvers::Structure::kDefinite)) names.push_back(entry.name);
+  }
+  bool ok = names.size() > 3;
+  for (const std::string& name : names) {
+    const auto solver =
+        hbar::solvers::make_solver(name, {.structure = hbar::solvers::Structure::kDefinite}, A);
+    solver->analyze(A);
+    solver->factorize(A);
+    Eigen::VectorXd x = Eigen::VectorXd::Ones(3);
+    solver->solve(x, x);
+    const double error = (x - Eigen::Vector3d(1.5, 2.0, 1.5)).norm();
+    std::printf("stranger: %s is %s, error %.3g\n", name.c_str(), solver->name().c_str(), error);
+    ok = ok && error < 1e-14;
+  }
+  return ok;
+}
+#else
+bool solvers_solve() { return true; }
+#endif
+
 }  // namespace
 
 int main() {
@@ -61,6 +93,7 @@ int main() {
 
   const bool solver_is_there = hbar::solvers::make_klu() != nullptr;
   const bool ok = gradient_is_right(builder.build()) &&
-                  gradient_is_right(hbar::scene::build_model(scene)) && solver_is_there;
+                  gradient_is_right(hbar::scene::build_model(scene)) && solver_is_there &&
+                  solvers_solve();
   return ok ? 0 : 1;
 }
