@@ -91,6 +91,9 @@ TEST(Spqr, DoesNotCareForTheUnitsOfRowsAndColumns) {
   Eigen::VectorXd extreme(A.rows());
   for (int i = 0; i < extreme.size(); ++i) extreme[i] = std::pow(10.0, 30 * (i % 3 - 1));
   EXPECT_NO_THROW((void)factorized(make_spqr, {}, SparseMatrix(extreme.asDiagonal() * A)));
+  Eigen::VectorXd one_tiny = Eigen::VectorXd::Ones(A.cols());
+  one_tiny[5] = 1e-20;
+  EXPECT_NO_THROW((void)factorized(make_spqr, {}, SparseMatrix(A * one_tiny.asDiagonal())));
 }
 
 TEST(Spqr, NamesTheColumnOfASingularMatrix) {
