@@ -17,7 +17,8 @@ namespace hbar::solvers {
 [[nodiscard]] std::unique_ptr<LinearSolver> make_cholmod_llt(const SolverOptions& options = {});
 
 /// CHOLMOD's supernodal LLᵀ (GPL): dense blocks by BLAS, for factors with much fill; otherwise like
-/// make_cholmod_llt.
+/// make_cholmod_llt. CHOLMOD before version 4, where it was built with OpenMP, starts up to four
+/// threads of its own; the environment's OMP_THREAD_LIMIT=1 alone stops it.
 [[nodiscard]] std::unique_ptr<LinearSolver> make_cholmod_supernodal(
     const SolverOptions& options = {});
 
