@@ -9,14 +9,15 @@
 
 namespace hbar::solver_benchmark {
 
-/// How large the matrices of a corpus are: files of about 0.1, 1 and 3 MB each.
+/// How large the matrices of a corpus are: about 10 to 50, 50 to 600 and 200 to 2300 kB each.
 enum class CorpusSize { kSmall, kMedium, kLarge };
 
 /// "small", "medium", "large".
 [[nodiscard]] std::string_view name_of(CorpusSize size);
 
 /// The cases of a corpus, in a fixed order: every family and every scene × BDF1, BDF2 × the four
-/// systems, with as many steps as suit the size and the model.
+/// systems, with as many steps as suit the size and the model. Models whose periodic system is
+/// singular go without it.
 ///
 /// @param scenes  the folder of the examples' scenes
 [[nodiscard]] std::vector<Case> corpus_cases(CorpusSize size, const std::filesystem::path& scenes);

@@ -7,10 +7,10 @@
 #include <sstream>
 
 #include "entries.h"
-#include "hbar/core/integrator.h"
 #include "hbar/core/nearest_name.h"
 #include "hbar/scene/numbers.h"
 #include "labels.h"
+#include "option_values.h"
 #include "process.h"
 
 namespace hbar::tool {
@@ -20,18 +20,33 @@ struct CommandRow {
   Command command;
   const char* name;
   const char* sentence;
+  const char* operand = "SCENE";
+  const char* operand_sentence = "Scene file (XML).";
+  const char* too_many = "One scene is enough";
 };
 
-constexpr std::array<CommandRow, 4> kCommands = {{
+constexpr std::array<CommandRow, 6> kCommands = {{
     {Command::kInfo, "info",
      "Shows a scene's links, coordinates, motors, variables, contacts, sensors, parameters."},
     {Command::kSimulate, "simulate", "Simulates a scene and shows or writes the trajectory."},
     {Command::kGradient, "gradient", "Simulates a scene and differentiates an objective of it."},
     {Command::kCheck, "check", "Compares the gradient with finite differences, class by class."},
+    {Command::kSolvers, "solvers",
+     "Measures linear solvers on systems of scenes, of generated models or of files.", "SCENE...",
+     "Scene files (XML); without any, generated models.", ""},
+    {Command::kCorpus, "corpus", "Writes such systems as Matrix Market files.", "DIR",
+     "Folder for the files; it is made if it is not there.", "One folder is enough"},
 }};
 
 /// Which commands have an option: one bit per command.
-enum : unsigned { kInInfo = 1, kInSimulate = 2, kInGradient = 4, kInCheck = 8 };
+enum : unsigned {
+  kInInfo = 1,
+  kInSimulate = 2,
+  kInGradient = 4,
+  kInCheck = 8,
+  kInSolvers = 16,
+  kInCorpus = 32
+};
 constexpr unsigned kInRuns = kInSimulate | kInGradient | kInCheck;
 
 struct OptionRow {
@@ -41,7 +56,7 @@ struct OptionRow {
   const char* sentence;
 };
 
-constexpr std::array<OptionRow, 11> kOptions = {{
+constexpr std::array<OptionRow, 26> kOptions = {{
     {"--steps", "N", kInRuns, "Number of time steps (100)."},
     {"--dt", "H", kInRuns, "Time step in seconds (the scene's)."},
     {"--integrator", "NAME", kInRuns, "bdf1, bdf2 or sdirk2 (the scene's)."},
@@ -58,72 +73,32 @@ constexpr std::array<OptionRow, 11> kOptions = {{
     {"--out", "FILE", kInRuns, "Writes the results as JSON; - is standard output."},
     {"--csv", "FILE", kInSimulate | kInGradient,
      "Writes q, qdot, variables and sensor readings of every step as CSV; - is standard output."},
+    {"--family", "LIST", kInSolvers,
+     "Generated models: chain, tree, hand (all, if neither a scene nor --matrices is given)."},
+    {"--dof", "LIST", kInSolvers, "Their numbers of joints; a hand's ball has 6 more (7)."},
+    {"--steps", "LIST", kInSolvers, "Numbers of time steps (50)."},
+    {"--integrator", "LIST", kInSolvers, "bdf1, bdf2, sdirk2 (bdf2)."},
+    {"--system", "LIST", kInSolvers, "adjoint, periodic, gauss_newton, kkt (all)."},
+    {"--solver", "LIST", kInSolvers,
+     "auto, and names of solvers (all: auto and, for each matrix, every one meant for it)."},
+    {"--ordering", "LIST", kInSolvers,
+     "default, natural, amd, colamd, metis, nested; solvers that do not offer one are left out "
+     "(default)."},
+    {"--rhs", "N", kInSolvers, "Right-hand sides that are solved at once (16)."},
+    {"--repeat", "N", kInSolvers, "The fastest of so many runs counts (3)."},
+    {"--matrices", "DIR", kInSolvers, "Measures on the Matrix Market files in a folder, too."},
+    {"--json", "FILE", kInSolvers, "Writes the results as JSON; - is standard output."},
+    {"--csv", "FILE", kInSolvers, "Writes a row per measurement as CSV; - is standard output."},
+    {"--plots", "DIR", kInSolvers, "Draws figures (SVG) with gnuplot, in a folder."},
+    {"--size", "LIST", kInCorpus, "small, medium, large or all (small)."},
+    {"--scenes", "DIR", kInCorpus,
+     "Folder of the examples' scenes (that of the source the command was built from)."},
 }};
-
-[[noreturn]] void usage(const std::string& message) { throw ToolError(ExitCode::kUsage, message); }
-
-/// Values of the options that were given, by name.
-using Given = std::map<std::string, std::string>;
-
-std::optional<std::string> value_of(const Given& given, const std::string& name) {
-  const auto place = given.find(name);
-  return place == given.end() ? std::nullopt : std::optional(place->second);
-}
-
-std::optional<double> positive_number(const Given& given, const std::string& name) {
-  const std::optional<std::string> text = value_of(given, name);
-  if (!text) {
-    return std::nullopt;
-  }
-  std::string reason;
-  const std::optional<double> number = scene::parse_number(*text, reason);
-  if (!number) {
-    usage(fmt::format("{}: {}", name, reason));
-  }
-  if (!(*number > 0.0)) {
-    usage(fmt::format("{}: {} is not positive", name, *text));
-  }
-  return number;
-}
-
-int steps(const Given& given) {
-  const std::optional<std::string> text = value_of(given, "--steps");
-  if (!text) {
-    return LoadOptions{}.steps;
-  }
-  std::string reason;
-  const std::optional<int> number = scene::parse_integer(*text, reason);
-  if (!number) {
-    usage(fmt::format("--steps: {}", reason));
-  }
-  if (*number < 1) {
-    usage(fmt::format("--steps: {} is not at least 1", *text));
-  }
-  return *number;
-}
-
-std::optional<std::vector<double>> numbers(const Given& given, const std::string& name) {
-  const std::optional<std::string> text = value_of(given, name);
-  if (!text) {
-    return std::nullopt;
-  }
-  std::string reason;
-  std::vector<double> list = parse_numbers(*text, reason);
-  if (!reason.empty()) {
-    usage(fmt::format("{}: {}", name, reason));
-  }
-  return list;
-}
 
 std::optional<std::string> integrator(const Given& given) {
   const std::optional<std::string> text = value_of(given, "--integrator");
-  std::vector<std::string> names;
-  for (const Integrator& row : integrators()) {
-    names.push_back(row.name);
-  }
-  if (text && std::find(names.begin(), names.end(), *text) == names.end()) {
-    usage(fmt::format("--integrator: there is no \"{}\"; {}", scene::quotable(*text),
-                      unknown_name_hint(*text, names)));
+  if (text) {
+    check_name("--integrator", *text, integrator_names());
   }
   return text;
 }
@@ -134,11 +109,8 @@ std::optional<ObjectiveChoice> objective(const Given& given) {
     return std::nullopt;
   }
   const std::vector<std::string>& names = objective_names();
+  check_name("--objective", *text, names);
   const auto place = std::find(names.begin(), names.end(), *text);
-  if (place == names.end()) {
-    usage(fmt::format("--objective: there is no \"{}\"; {}", scene::quotable(*text),
-                      unknown_name_hint(*text, names)));
-  }
   return static_cast<ObjectiveChoice>(place - names.begin());
 }
 
@@ -160,19 +132,11 @@ void read_parameters(const Given& given, LoadOptions& load) {
   load.parameter_names.assign(names.begin(), names.end());
 }
 
-std::optional<std::string> file(const Given& given, const std::string& name) {
-  std::optional<std::string> text = value_of(given, name);
-  if (text && text->empty()) {
-    usage(fmt::format("{}: the file has no name", name));
-  }
-  return text;
-}
-
 Arguments read(Command command, std::string scene, const Given& given) {
   Arguments out;
   out.command = command;
   out.scene = std::move(scene);
-  out.load.steps = steps(given);
+  out.load.steps = count(given, "--steps").value_or(out.load.steps);
   out.load.h = positive_number(given, "--dt");
   out.load.integrator = integrator(given);
   out.load.newton_tol = positive_number(given, "--newton-tol");
@@ -191,7 +155,7 @@ Arguments read(Command command, std::string scene, const Given& given) {
 
 /// What CLI11 could not place, in this command's words.
 [[noreturn]] void explain(const CLI::App& command, const std::vector<std::string>& names,
-                          const CLI::ParseError& error) {
+                          const char* too_many, const CLI::ParseError& error) {
   const std::string help = fmt::format(" (see: hbar {} --help)", command.get_name());
   for (const std::string& word : command.remaining()) {
     if (word.starts_with("-")) {
@@ -199,8 +163,8 @@ Arguments read(Command command, std::string scene, const Given& given) {
       usage(fmt::format("{}: there is no option {}; {}{}", command.get_name(),
                         scene::quotable(name), unknown_name_hint(name, names), help));
     }
-    usage(fmt::format("{}: what is \"{}\" for? One scene is enough{}", command.get_name(),
-                      scene::quotable(word), help));
+    usage(fmt::format("{}: what is \"{}\" for? {}{}", command.get_name(), scene::quotable(word),
+                      too_many, help));
   }
   usage(fmt::format("{}: {}{}", command.get_name(), error.what(), help));
 }
@@ -225,20 +189,31 @@ void check_command_name(int argc, const char* const* argv) {
 
 }  // namespace
 
-std::variant<Arguments, std::string> parse_arguments(int argc, const char* const* argv) {
+CommandLine parse_arguments(int argc, const char* const* argv) {
   check_command_name(argc, argv);
   CLI::App app("Differentiable simulation of articulated rigid bodies.", "hbar");
   app.set_version_flag("--version", "hbar " HBAR_VERSION);
   app.footer("Lists are numbers or names separated by blanks or commas. Each command has --help.");
-  std::string scene;
+  std::vector<std::string> scenes;
+  std::string operand;
   std::array<std::map<std::string, std::string>, kCommands.size()> values;
   std::array<CLI::App*, kCommands.size()> commands = {};
   for (std::size_t i = 0; i < kCommands.size(); ++i) {
-    commands[i] = app.add_subcommand(kCommands[i].name, kCommands[i].sentence);
-    commands[i]->add_option("SCENE", scene, "Scene file (XML).")->required()->type_name("");
-    for (const OptionRow& row : kOptions) {
-      if ((row.commands & (1U << i)) != 0U) {
-        commands[i]->add_option(row.name, values[i][row.name], row.sentence)->type_name(row.value);
+    const CommandRow& row = kCommands[i];
+    commands[i] = app.add_subcommand(row.name, row.sentence);
+    if (row.command == Command::kSolvers) {
+      commands[i]->add_option(row.operand, scenes, row.operand_sentence)->type_name("");
+    } else {
+      commands[i]
+          ->add_option(row.operand, operand, row.operand_sentence)
+          ->required()
+          ->type_name("");
+    }
+    for (const OptionRow& option : kOptions) {
+      if ((option.commands & (1U << i)) != 0U) {
+        commands[i]
+            ->add_option(option.name, values[i][option.name], option.sentence)
+            ->type_name(option.value);
       }
     }
   }
@@ -255,7 +230,7 @@ std::variant<Arguments, std::string> parse_arguments(int argc, const char* const
         names.push_back(name);
       }
       if (commands[i]->parsed() || std::string_view(argv[1]) == kCommands[i].name) {
-        explain(*commands[i], names, error);
+        explain(*commands[i], names, kCommands[i].too_many, error);
       }
     }
     usage(error.what());
@@ -268,7 +243,14 @@ std::variant<Arguments, std::string> parse_arguments(int argc, const char* const
           given.emplace(name, value);
         }
       }
-      return read(kCommands[i].command, scene, given);
+      switch (kCommands[i].command) {
+        case Command::kSolvers:
+          return read_solver_arguments(scenes, given);
+        case Command::kCorpus:
+          return read_corpus_arguments(operand, given);
+        default:
+          return read(kCommands[i].command, operand, given);
+      }
     }
   }
   usage("a command is needed (see: hbar --help)");

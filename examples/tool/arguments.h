@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "hbar/adjoint/load_problem.h"
+#include "solver_arguments.h"
 
 namespace hbar::tool {
 
-/// What to do with a scene.
-enum class Command { kInfo, kSimulate, kGradient, kCheck };
+/// What to do. The first four take a scene and have Arguments.
+enum class Command { kInfo, kSimulate, kGradient, kCheck, kSolvers, kCorpus };
 
 /// What the command line says. Sizes are not checked: the scene is not read yet.
 struct Arguments {
@@ -24,11 +25,11 @@ struct Arguments {
   std::optional<std::string> csv;            ///< CSV file; "-" is standard output
 };
 
+/// What a command line says, or a text to print (help, version).
+using CommandLine = std::variant<Arguments, SolverArguments, CorpusArguments, std::string>;
+
 /// Reads the command line.
-///
-/// @returns  what it says, or a text to print (help, version)
 /// @throws ToolError (kUsage) naming the option, what was found and what is allowed
-[[nodiscard]] std::variant<Arguments, std::string> parse_arguments(int argc,
-                                                                   const char* const* argv);
+[[nodiscard]] CommandLine parse_arguments(int argc, const char* const* argv);
 
 }  // namespace hbar::tool

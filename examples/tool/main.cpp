@@ -1,68 +1,27 @@
 // The hbar command: what a scene is, its trajectory, the gradient of an objective of it, and the
-// proof that the gradient is right. doc/command.md is its manual.
-
-#include <fmt/format.h>
-#include <unistd.h>
+// proof that the gradient is right; and how linear solvers do on such systems. doc/command.md is
+// its manual.
 
 #include <exception>
-#include <filesystem>
 #include <new>
 
 #include "arguments.h"
-#include "hbar/scene/atomic_file.h"
 #include "inputs.h"
+#include "outputs.h"
 #include "process.h"
 #include "results.h"
+#ifdef HBAR_HAVE_SUITE
+#include "solver_commands.h"
+#endif
 #include "text_output.h"
 
 namespace hbar::tool {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Refuses, before anything is computed, a result file that could not be written or that is one of
-/// the files read.
-void check_output(const std::optional<std::string>& output, const LoadedProblem& loaded) {
-  if (!output || *output == "-") {
-    return;
-  }
-  const fs::path path(*output);
-  std::error_code code;
-  for (const fs::path& input : loaded.files) {
-    if (fs::equivalent(path, input, code)) {
-      throw ToolError(ExitCode::kInputOutput,
-                      fmt::format("{}: is an input of this run and stays as it is; name another "
-                                  "file for the results",
-                                  *output));
-    }
-  }
-  if (fs::is_directory(path, code)) {
-    throw ToolError(ExitCode::kInputOutput, *output + ": cannot be written: Is a directory");
-  }
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!fs::is_directory(folder, code)) {
-    throw ToolError(
-        ExitCode::kInputOutput,
-        fmt::format("{}: cannot be written: there is no folder {}", *output, folder.string()));
-  }
-}
-
 void check_outputs(const Arguments& arguments, const LoadedProblem& loaded) {
-  check_output(arguments.out, loaded);
-  check_output(arguments.csv, loaded);
-  std::error_code code;
-  if (arguments.out && arguments.csv &&
-      (fs::weakly_canonical(*arguments.out, code) == fs::weakly_canonical(*arguments.csv, code))) {
-    throw ToolError(ExitCode::kUsage, "--out and --csv name the same file");
-  }
-}
-
-void write_output(const std::string& output, const std::string& text) {
-  if (output == "-") {
-    write_stdout(text);
-  } else {
-    scene::write_file_atomically(output, text);
-  }
+  check_output(arguments.out, loaded.files);
+  check_output(arguments.csv, loaded.files);
+  check_distinct("--out", arguments.out, "--csv", arguments.csv);
 }
 
 std::string status_word(RolloutStatus status) {
@@ -166,17 +125,35 @@ ExitCode run_command(const Arguments& given) {
       return simulate(arguments, loaded);
     case Command::kCheck:
       return check(arguments, loaded);
+    case Command::kSolvers:
+    case Command::kCorpus:
+      break;  // they have arguments of their own
   }
   return ExitCode::kUsage;
 }
 
+#ifdef HBAR_HAVE_SUITE
+ExitCode run_command(const SolverArguments& arguments) { return run_solvers(arguments); }
+ExitCode run_command(const CorpusArguments& arguments) { return run_corpus(arguments); }
+#else
+[[noreturn]] void say_no_suite() {
+  throw ToolError(ExitCode::kUsage,
+                  "this build has no hbar::suite, whose solvers are measured; configure with "
+                  "-DHBAR_WITH_SUITE=ON");
+}
+ExitCode run_command(const SolverArguments& /*arguments*/) { say_no_suite(); }
+ExitCode run_command(const CorpusArguments& /*arguments*/) { say_no_suite(); }
+#endif
+
+/// Help or version.
+ExitCode run_command(const std::string& text) {
+  write_stdout(text);
+  return ExitCode::kOk;
+}
+
 ExitCode run_line(int argc, const char* const* argv) {
-  const std::variant<Arguments, std::string> parsed = parse_arguments(argc, argv);
-  if (const auto* text = std::get_if<std::string>(&parsed)) {
-    write_stdout(*text);
-    return ExitCode::kOk;
-  }
-  return run_command(std::get<Arguments>(parsed));
+  return std::visit([](const auto& parsed) { return run_command(parsed); },
+                    parse_arguments(argc, argv));
 }
 
 /// What is thrown, as an exit code and a line on standard error.

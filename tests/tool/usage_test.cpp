@@ -37,7 +37,8 @@ struct Refusal {
 TEST_F(Usage, EveryMistakeIsNamed) {
   const std::string file = scene("pendulum");
   const std::vector<Refusal> refusals = {
-      {{}, "a command is needed: info, simulate, gradient, check (see: hbar --help)"},
+      {{},
+       "a command is needed: info, simulate, gradient, check, solvers, corpus (see: hbar --help)"},
       {{"simulat", file},
        "there is no command \"simulat\"; did you mean 'simulate'? (see: hbar --help)"},
       {{"simulate"}, "simulate: SCENE is required (see: hbar simulate --help)"},

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hbar::tool {
+
+/// Refuses, before anything is computed, a result file that could not be written or that is one of
+/// the files read.
+///
+/// @param output  a file; "-" is standard output
+/// @param inputs  files that the run reads
+/// @throws ToolError (kInputOutput)
+void check_output(const std::optional<std::string>& output,
+                  const std::vector<std::filesystem::path>& inputs);
+
+/// Refuses two results that would go to one file.
+///
+/// @throws ToolError (kUsage) naming the two options
+void check_distinct(const std::string& option_a, const std::optional<std::string>& a,
+                    const std::string& option_b, const std::optional<std::string>& b);
+
+/// Writes a text to standard output ("-") or, whole or not at all, to a file.
+void write_output(const std::string& output, const std::string& text);
+
+/// Makes a folder, and those it is in, unless it is there.
+///
+/// @throws ToolError (kInputOutput)
+void make_output_folder(const std::string& folder);
+
+}  // namespace hbar::tool
