@@ -79,7 +79,8 @@ LoadedProblem make_problem(Model model, const SimulationOptions& simulation,
   ParameterSet parameters = choose_parameters(model, options);
   Simulator simulator(std::move(model), std::move(parameters), simulation);
   Inputs inputs = simulator.nominal_inputs();
-  return {{std::move(simulator), make_objective(objective), std::move(inputs)}, objective, {}, {}};
+  return {
+      {std::move(simulator), make_objective(objective), std::move(inputs)}, objective, {}, {}, {}};
 }
 
 /// Names of the files that a body is made from.
@@ -136,6 +137,8 @@ LoadedProblem load_problem(const std::filesystem::path& path, const LoadOptions&
   try {
     LoadedProblem out =
         make_problem(std::move(model), simulation_options(scene.description, options), options);
+    out.linear_solver =
+        options.linear_solver.value_or(scene.description.solver_options.linear_solver);
     out.notices = std::move(scene.notices);
     out.files = files_of(path, scene);
     return out;

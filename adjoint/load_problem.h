@@ -29,6 +29,8 @@ struct LoadOptions {
   std::optional<double> h;                ///< time step, time, > 0; else the scene's
   int steps = 100;                        ///< N ≥ 1
   std::optional<double> newton_tol;       ///< on ‖g‖₂, > 0; else the scene's
+  /// Of the gradient, a name of solvers/solver_suite.h, "auto" or "sweep"; else the scene's.
+  std::optional<std::string> linear_solver;
   ParameterChoice parameters = ParameterChoice::kMask;
   std::vector<std::string> parameter_names;  ///< as ParameterSet::named; kNamed only
   /// Else kVariables where the scene has an end effector, and kFinalPosition where it has none.
@@ -39,7 +41,9 @@ struct LoadOptions {
 /// A problem made from a scene file, at nominal inputs: controls and initial state zero.
 struct LoadedProblem {
   Problem problem;
-  ObjectiveChoice objective;                 ///< the one that was taken
+  ObjectiveChoice objective;  ///< the one that was taken
+  std::string
+      linear_solver;  ///< of the gradient: "sweep" is AdjointSweep, others AssembledAdjoint's
   std::vector<std::string> notices;          ///< what the person should know, each `file:line: …`
   std::vector<std::filesystem::path> files;  ///< read for it, the scene first; each once
 };

@@ -42,12 +42,13 @@ struct Options {
   friend bool operator==(const Options&, const Options&) = default;
 };
 
-/// `<solver_option>`: Newton's method of each step.
+/// `<solver_option>`: Newton's method of each step, and the linear solver of the gradient.
 struct SolverOptions {
-  double tol = 1e-9;                ///< bound on ‖g‖₂, > 0
-  std::optional<double> rtol = {};  ///< bound on ‖g‖₂ relative to the forces, > 0
-  int max_iter = 100;               ///< iterations per stage, ≥ 1
-  int max_ls = 20;                  ///< halvings per line search, ≥ 1
+  double tol = 1e-9;                    ///< bound on ‖g‖₂, > 0
+  std::optional<double> rtol = {};      ///< bound on ‖g‖₂ relative to the forces, > 0
+  int max_iter = 100;                   ///< iterations per stage, ≥ 1
+  int max_ls = 20;                      ///< halvings per line search, ≥ 1
+  std::string linear_solver = "sweep";  ///< of the gradient, by name; "sweep" forms no matrix
   friend bool operator==(const SolverOptions&, const SolverOptions&) = default;
 };
 

@@ -61,7 +61,8 @@ Options read_options(const XmlElement& element) {
 
 SolverOptions read_solver_options(const XmlElement& element) {
   return {element.number("tol"), element.optional_number("rtol"), element.integer("max_iter"),
-          element.integer("max_ls")};
+          element.integer("max_ls"),
+          choice_name("solver_option", "linear_solver", element.choice("linear_solver"))};
 }
 
 Ground read_ground(const XmlElement& element) {

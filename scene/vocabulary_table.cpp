@@ -133,7 +133,14 @@ constexpr std::array kSolver = {
                   .kind = Kind::kInteger,
                   .fallback = "20",
                   .range = Range::kAtLeastOne,
-                  .sentence = "Halvings per line search."}};
+                  .sentence = "Halvings per line search."},
+    AttributeInfo{.name = "linear_solver",
+                  .kind = Kind::kChoice,
+                  .fallback = "sweep",
+                  .choices = "sweep|auto|block_substitution|block_banded|lapack_band|klu|umfpack|"
+                             "eigen_sparse_lu|mumps|cholmod_normal|spqr",
+                  .sentence = "What solves the gradient's linear system; sweep forms no matrix.",
+                  .extension = true}};
 constexpr std::array kGround = {kPos, AttributeInfo{.name = "normal",
                                                     .count = 3,
                                                     .fallback = "0 0 1",
@@ -319,7 +326,8 @@ std::span<const ElementInfo> vocabulary() {
   static const std::array kElements = {
       ElementInfo{"redmax", "", true, "A scene.", kModel},
       ElementInfo{"option", "redmax", true, "Time integration, gravity and units.", kOption},
-      ElementInfo{"solver_option", "redmax", true, "Newton's method of each step.", kSolver},
+      ElementInfo{"solver_option", "redmax", true,
+                  "Newton's method of each step, and the linear solver of the gradient.", kSolver},
       ElementInfo{"ground", "redmax", true, "A plane that bodies may rest on.", kGround},
       ElementInfo{"default",
                   "redmax",

@@ -250,6 +250,7 @@ void write_options(XmlWriter& out, const Description& description) {
   out.put("rtol", description.solver_options.rtol);
   out.put("max_iter", description.solver_options.max_iter);
   out.put("max_ls", description.solver_options.max_ls);
+  out.put("linear_solver", description.solver_options.linear_solver);
   out.close();
   if (!description.ground) return;
   out.open("ground");

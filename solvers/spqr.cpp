@@ -101,6 +101,8 @@ class Spqr final : public LinearSolver {
 
   void do_factorize() override {
     info_ = {};
+    // What was found to have a lower rank leaves a permutation behind that the next would keep.
+    if (qr_->Rmap != nullptr) do_analyze();
     scale_values();
     const int ok = SuiteSparseQR_numeric<double>(kPivotFloor, &view_, qr_, &common_);
     if (ok == 0 || common_.status < CHOLMOD_OK) throw_status("factorize");

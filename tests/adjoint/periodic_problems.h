@@ -7,12 +7,14 @@
 #include "hbar/adjoint/objective_terms.h"
 #include "hbar/adjoint/problem.h"
 #include "hbar/core/model_builder.h"
+#include "hbar/core/surface_points.h"
 
 namespace hbar::testing {
 
 /// A double pendulum with damping in gravity, both joints driven by torques of period 1 s; one
-/// period, `steps` steps.
-[[nodiscard]] inline Problem driven_pendulum(const std::string& integrator, int steps) {
+/// period, `steps` steps. With contact its end strikes through a soft ground.
+[[nodiscard]] inline Problem driven_pendulum(const std::string& integrator, int steps,
+                                             bool contact = false) {
   ModelBuilder builder("driven pendulum");
   builder.set_gravity({0.0, 0.0, -9.8});
   Joint shoulder{.name = "shoulder", .kind = RevoluteJoint{{0.0, 1.0, 0.0}}, .damping = 0.8};
@@ -23,9 +25,15 @@ namespace hbar::testing {
   Joint elbow{.name = "elbow", .kind = RevoluteJoint{{0.2, 1.0, 0.0}}, .damping = 0.4};
   elbow.X_PJ.p = {0.0, 0.0, -0.5};
   elbow.stiffness = 0.6;
-  const int lower =
-      builder.add_link(upper, elbow, solid_body("lower", Cuboid{{0.05, 0.05, 0.5}}, 800.0, middle),
-                       "lower", kMaskAll);
+  Body end = solid_body("lower", Cuboid{{0.05, 0.05, 0.5}}, 800.0, middle);
+  end.contact_points = surface_points(end.shape, {.cuboid = {2, 2, 2}});
+  const int lower = builder.add_link(upper, elbow, end, "lower", kMaskAll);
+  if (contact) {
+    Contact ground{.coefficients = {.kn = 400.0, .kt = 10.0, .mu = 0.3, .damping = 100.0}};
+    ground.link = lower;
+    ground.surface = Plane{{0.0, 0.0, -0.97}, {0.0, 0.0, 1.0}};
+    builder.add_contact(ground);
+  }
   builder.add_motor({.link = upper, .kind = Motor::Kind::kForce});
   builder.add_motor({.link = lower, .kind = Motor::Kind::kForce});
   builder.add_end_effector({.name = "tip", .link = lower, .position = {0.0, 0.02, -0.5}});

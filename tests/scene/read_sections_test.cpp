@@ -10,10 +10,11 @@ Description section(const std::string& text) {
 TEST(Sections, ReadOptions) {
   const Description d = section(
       "<option integrator=\"SDIRK2\" timestep=\"0.01\" gravity=\"1 2 3\" unit=\"m-kg\"/>"
-      "<solver_option tol=\"1e-6\" rtol=\"1e-7\" max_iter=\"7\" max_ls=\"8\"/>"
+      "<solver_option tol=\"1e-6\" rtol=\"1e-7\" max_iter=\"7\" max_ls=\"8\" "
+      "linear_solver=\"spqr\"/>"
       "<ground pos=\"0 0 1\" normal=\"0 1 0\"/>");
   EXPECT_EQ(d.options, (Options{Integrator::kSdirk2, 0.01, {1.0, 2.0, 3.0}, UnitSystem::kMKg}));
-  EXPECT_EQ(d.solver_options, (SolverOptions{1e-6, 1e-7, 7, 8}));
+  EXPECT_EQ(d.solver_options, (SolverOptions{1e-6, 1e-7, 7, 8, "spqr"}));
   EXPECT_EQ(d.ground, (Ground{{0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}, {}}));
 }
 
@@ -105,6 +106,11 @@ const std::vector<BadScene> kRefused = {
     {"unknown integrator", scene_with_section("<option integrator=\"BDF7\"/>"),
      "bad.xml:2: <option integrator=\"BDF7\">: unknown integrator; integrator takes one of BDF1, "
      "BDF2, SDIRK2"},
+    {"unknown linear solver", scene_with_section("<solver_option linear_solver=\"kul\"/>"),
+     "bad.xml:2: <solver_option linear_solver=\"kul\">: unknown linear_solver; linear_solver takes "
+     "one of "
+     "sweep, auto, block_substitution, block_banded, lapack_band, klu, umfpack, eigen_sparse_lu, "
+     "mumps, cholmod_normal, spqr"},
     {"no tolerance", scene_with_section("<solver_option tol=\"0\"/>"),
      "bad.xml:2: <solver_option tol=\"0\">: out of range; tol takes 1 number > 0"},
     {"ground without a normal", scene_with_section("<ground normal=\"0 0 0\"/>"),

@@ -30,7 +30,7 @@ Description everything() {
   Description d;
   d.model = "all <of> \"it\" & more";
   d.options = {Integrator::kSdirk2, 1.0 / 3.0, {0.1, -0.2, 1e-300}, UnitSystem::kMKg};
-  d.solver_options = {1e-7, 1e-5, 17, 9};
+  d.solver_options = {1e-7, 1e-5, 17, 9, "klu"};
   d.ground = Ground{{1.0, 2.0, 3.0}, {0.0, 0.1, 0.9}, {}};
   Robot robot;
   robot.links.push_back(make_link("box", -1, CuboidBody{{1.1, 2.2, 3.3}, {3, 4, 5}}));
