@@ -1,4 +1,4 @@
-# Compiler settings shared by every floor, and the two functions that declare a floor.
+# Compiler settings shared by every floor, and the functions that declare a floor.
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
@@ -46,6 +46,12 @@ endif()
 if(BUILD_SHARED_LIBS)
   set(CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
 endif()
+
+# hbar_compile_quickly(SOURCES... ): files of this folder that only read arguments or write text, for
+# which the optimiser takes longer than it ever saves.
+function(hbar_compile_quickly)
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
+endfunction()
 
 # The headers of every floor are reached as "hbar/FLOOR/file.h", through one include directory.
 set(HBAR_INCLUDE_DIR ${CMAKE_BINARY_DIR}/include)

@@ -6,13 +6,14 @@
 
 #include "hbar/core/error.h"
 #include "tests/adjoint/small_problems.h"
+#include "tests/support/numerics.h"
 
 namespace hbar {
 namespace {
 
 using Field = PartialPlace::Field;
+using testing::kInfinity;
 using testing::small_model;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TrajectoryValues numbered(const Model& model, const ParameterSet& set, int steps) {
   TrajectoryValues out;

@@ -9,12 +9,13 @@
 #include "hbar/adjoint/objective_terms.h"
 #include "hbar/solvers/gradient_check.h"
 #include "tests/adjoint/small_problems.h"
+#include "tests/support/numerics.h"
 
 namespace hbar {
 namespace {
 
 using Field = PartialPlace::Field;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using testing::kInfinity;
 
 /// Every field is read by some row; the last block of controls is a short one.
 DesignProblemParts small_parts(const std::string& integrator) {

@@ -10,7 +10,7 @@ namespace hbar {
 namespace {
 
 /// A scene file of one hinge in a folder of its own.
-class LoadProblem : public testing::Test {
+class LoadProblem : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string name = (std::filesystem::temp_directory_path() / "hbar_load.XXXXXX").string();

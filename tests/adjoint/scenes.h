@@ -3,6 +3,7 @@
 #include <string>
 
 #include "hbar/adjoint/objective_terms.h"
+#include "hbar/adjoint/simulator.h"
 #include "hbar/core/model_builder.h"
 
 namespace hbar::testing {
@@ -103,6 +104,20 @@ inline const Eigen::Vector3d kGravity{0.0, 0.0, -9.81};
       [=](const TrajectoryValues& values, TrajectoryPartials& partials) {
         partials.p += weight * (values.p - centre);
       });
+}
+
+[[nodiscard]] inline SimulationOptions options_of(const std::string& integrator, double h,
+                                                  int steps) {
+  SimulationOptions options;
+  options.integrator = integrator;
+  options.h = h;
+  options.steps = steps;
+  return options;
+}
+
+/// A simulator with all parameters of a model.
+inline Simulator make_simulator(const Model& model, const SimulationOptions& options) {
+  return {model, ParameterSet::all(model), options};
 }
 
 }  // namespace hbar::testing

@@ -17,20 +17,10 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
+using testing::make_simulator;
 using testing::message_of;
+using testing::options_of;
 using testing::relative_gap;
-
-SimulationOptions options_of(const std::string& integrator, double h, int steps) {
-  SimulationOptions options;
-  options.integrator = integrator;
-  options.h = h;
-  options.steps = steps;
-  return options;
-}
-
-Simulator make_simulator(const Model& model, const SimulationOptions& options) {
-  return {model, ParameterSet::all(model), options};
-}
 
 /// Positions and velocities at the steps' ends of the slider.
 Eigen::Matrix2Xd states_of(Simulator& simulator, double q0, double qdot0, double force = 0.0) {

@@ -17,7 +17,7 @@ using testing::largest;
 constexpr double kPi = std::numbers::pi;
 
 /// Rotation vectors of every length between the singular ones, 0 and 2π.
-std::vector<Vector3d> rotation_vectors() {
+std::vector<Vector3d> vectors_between_singular_ones() {
   testing::Random random(5);
   std::vector<Vector3d> all;
   for (const double length : {0.3, 1.0, kPi, 4.0, kChartLimit, 5.5, 6.1}) {
@@ -34,13 +34,13 @@ TEST(Chart, LimitLiesBetweenHalfATurnAndTheSingularity) {
 }
 
 TEST(Chart, ChangeIsItsOwnInverse) {
-  for (const Vector3d& r : rotation_vectors()) {
+  for (const Vector3d& r : vectors_between_singular_ones()) {
     EXPECT_LT((change_chart(change_chart(r)) - r).norm(), 1e-14) << r.norm();
   }
 }
 
 TEST(Chart, ChangeKeepsTheRotation) {
-  for (const Vector3d& r : rotation_vectors()) {
+  for (const Vector3d& r : vectors_between_singular_ones()) {
     const Matrix3d R = exp_rotation<double>(r);
     EXPECT_LT(largest(exp_rotation<double>(change_chart(r)) - R), 1e-14) << r.norm();
   }
@@ -57,7 +57,7 @@ TEST(Chart, ChangeKeepsARotationBeyondAFullTurn) {
 }
 
 TEST(Chart, DerivativeIsThatOfTheChange) {
-  for (const Vector3d& r : rotation_vectors()) {
+  for (const Vector3d& r : vectors_between_singular_ones()) {
     const Eigen::MatrixXd expected =
         differences([](const Eigen::VectorXd& x) { return change_chart(x); }, r);
     EXPECT_LT(largest(chart_derivative(r) - expected), 1e-9) << r.norm();
@@ -66,7 +66,7 @@ TEST(Chart, DerivativeIsThatOfTheChange) {
 
 TEST(Chart, DerivativeKeepsTheAngularVelocity) {
   testing::Random random(6);
-  for (const Vector3d& r : rotation_vectors()) {
+  for (const Vector3d& r : vectors_between_singular_ones()) {
     const Vector3d rate = random.vector3(3.0);
     const Vector3d omega = right_jacobian<double>(r) * rate;
     const Vector3d same = right_jacobian<double>(change_chart(r)) * (chart_derivative(r) * rate);
@@ -75,7 +75,7 @@ TEST(Chart, DerivativeKeepsTheAngularVelocity) {
 }
 
 TEST(Chart, DerivativeIsTheInverseOfTheWayBack) {
-  for (const Vector3d& r : rotation_vectors()) {
+  for (const Vector3d& r : vectors_between_singular_ones()) {
     const Matrix3d there_and_back = chart_derivative(change_chart(r)) * chart_derivative(r);
     EXPECT_LT(largest(there_and_back - Matrix3d::Identity()), 1e-13) << r.norm();
   }
@@ -83,7 +83,7 @@ TEST(Chart, DerivativeIsTheInverseOfTheWayBack) {
 
 TEST(Chart, SecondDerivativeIsThatOfTheRate) {
   testing::Random random(7);
-  for (const Vector3d& r : rotation_vectors()) {
+  for (const Vector3d& r : vectors_between_singular_ones()) {
     const Vector3d rate = random.vector3(3.0);
     const Eigen::MatrixXd expected = differences(
         [&](const Eigen::VectorXd& x) { return Eigen::VectorXd(chart_derivative(x) * rate); }, r);

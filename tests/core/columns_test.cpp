@@ -10,11 +10,10 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using testing::kStates;
 using testing::Random;
 using testing::relative_gap;
 using testing::State;
-
-constexpr int kStates = 20;
 
 /// Combinations of ∂ID/∂q, ∂ID/∂q̇ and M at a state.
 class Derivatives {

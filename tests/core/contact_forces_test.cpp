@@ -51,10 +51,10 @@ struct Instant {
   ContactForces<double> contacts{model};
 };
 
-constexpr ContactCoefficients kFirm = {.kn = 100.0, .kt = 2.0, .mu = 0.5, .damping = 0.0};
+constexpr ContactCoefficients kFirmGround = {.kn = 100.0, .kt = 2.0, .mu = 0.5, .damping = 0.0};
 
 /// A body free to translate over the world's plane z = 0.
-Model on_the_ground(const Shape& shape, const ContactCoefficients& coefficients = kFirm) {
+Model on_the_ground(const Shape& shape, const ContactCoefficients& coefficients = kFirmGround) {
   ModelBuilder builder("ground");
   Body body = solid_body("b", shape, 1.0);
   if (!std::holds_alternative<Sphere>(shape)) {
@@ -163,7 +163,7 @@ TEST(ContactForces, TouchAPlaneThatAnotherBodyCarries) {
   builder.add_contact({.link = 1,
                        .other = 0,
                        .surface = Plane{{0.0, 0.3, 0.0}, Vector3d::UnitY()},
-                       .coefficients = kFirm});
+                       .coefficients = kFirmGround});
   const Model model = builder.build();
   Instant at(model);
   VectorXd q(6);
@@ -174,7 +174,7 @@ TEST(ContactForces, TouchAPlaneThatAnotherBodyCarries) {
 }
 
 /// The same model built somewhere else: every root, and every plane of the world, moved by X.
-Model moved(const Model& model, const RigidTransform<double>& X) {
+Model moved_with_planes(const Model& model, const RigidTransform<double>& X) {
   ModelBuilder builder(model.name());
   for (const Link& link : model.links()) {
     Joint joint = link.joint;
@@ -209,7 +209,7 @@ TEST_P(EveryModelsContacts, DoNotKnowWhereTheWorldIs) {
   int touching = 0;
   for (int i = 0; i < 10; ++i) {
     const RigidTransform<double> X = testing::random_pose(random);
-    const Model elsewhere = moved(model, X);
+    const Model elsewhere = moved_with_planes(model, X);
     const testing::State state = testing::random_state(model, random);
     Instant here(model);
     Instant there(elsewhere);

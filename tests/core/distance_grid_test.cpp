@@ -19,18 +19,18 @@
 namespace hbar {
 namespace {
 
-struct Solid {
+struct NamedMesh {
   const char* name;
   TriangleMesh mesh;
 };
 
 /// Smooth, sharp, spiky, thinner than a cell; far from the origin.
-std::vector<Solid> solids() {
-  std::vector<Solid> list = {{"ball", icosphere(1.0, 3)},
-                             {"box", box_mesh({2.0, 1.5, 1.0})},
-                             {"plate", box_mesh({2.0, 2.0, 0.02})},
-                             {"rod", box_mesh({0.02, 2.0, 0.02})},
-                             {"star", star_mesh(2, 1)}};
+std::vector<NamedMesh> named_meshes() {
+  std::vector<NamedMesh> list = {{"ball", icosphere(1.0, 3)},
+                                 {"box", box_mesh({2.0, 1.5, 1.0})},
+                                 {"plate", box_mesh({2.0, 2.0, 0.02})},
+                                 {"rod", box_mesh({0.02, 2.0, 0.02})},
+                                 {"star", star_mesh(2, 1)}};
   list.push_back({"moved", star_mesh(1, 2)});
   for (Eigen::Vector3d& vertex : list.back().mesh.vertices) vertex.array() += 100.0;
   return list;
@@ -61,7 +61,7 @@ std::string refusal(const TriangleMesh& mesh, int cells) {
 }
 
 TEST(DistanceGrid, IsExactAtItsNodes) {
-  for (const auto& [name, mesh] : solids()) {
+  for (const auto& [name, mesh] : named_meshes()) {
     const TriangleDistance exact(mesh);
     const DistanceGrid grid(mesh, 12);
     const GridNodes& nodes = grid.nodes();
@@ -77,7 +77,7 @@ TEST(DistanceGrid, IsExactAtItsNodes) {
 }
 
 TEST(DistanceGrid, TellsItsErrorNearTheSurface) {
-  for (const auto& [name, mesh] : solids()) {
+  for (const auto& [name, mesh] : named_meshes()) {
     const TriangleDistance exact(mesh);
     const DistanceGrid grid(mesh, 24);
     const double cell = grid.nodes().spacing;
@@ -128,7 +128,7 @@ TEST(DistanceGrid, ConvergesWithOrderFourWhereTheDistanceIsSmooth) {
 }
 
 TEST(DistanceGrid, EveryDerivativeIsThatOfTheOneBefore) {
-  for (const auto& [name, mesh] : solids()) {
+  for (const auto& [name, mesh] : named_meshes()) {
     const TriangleDistance exact(mesh);
     const DistanceGrid grid(mesh, 16);
     const double cell = grid.nodes().spacing;
@@ -155,7 +155,7 @@ TEST(DistanceGrid, EveryDerivativeIsThatOfTheOneBefore) {
 }
 
 TEST(DistanceGrid, IsTwiceContinuouslyDifferentiableAcrossCells) {
-  for (const auto& [name, mesh] : solids()) {
+  for (const auto& [name, mesh] : named_meshes()) {
     const DistanceGrid grid(mesh, 12);
     const GridNodes& nodes = grid.nodes();
     const double gap = 1e-9 * nodes.spacing;
@@ -177,7 +177,7 @@ TEST(DistanceGrid, IsTwiceContinuouslyDifferentiableAcrossCells) {
 }
 
 TEST(DistanceGrid, LowerBoundIsNegativeOnlyWhereTheDistanceIs) {
-  for (const auto& [name, mesh] : solids()) {
+  for (const auto& [name, mesh] : named_meshes()) {
     const TriangleDistance exact(mesh);
     const DistanceGrid grid(mesh, 16);
     const Eigen::AlignedBox3d domain(grid.nodes().origin, grid.nodes().last());
@@ -204,7 +204,7 @@ TEST(DistanceGrid, LowerBoundIsNegativeOnlyWhereTheDistanceIs) {
 
 TEST(DistanceGrid, IsPositiveBeyondTheSolid) {
   // Also where the grid is too coarse to see it: ripples do not reach a cell beyond the surface.
-  for (const auto& [name, mesh] : solids()) {
+  for (const auto& [name, mesh] : named_meshes()) {
     const TriangleDistance exact(mesh);
     const DistanceGrid grid(mesh, 8);
     std::mt19937 engine(6);
@@ -231,7 +231,7 @@ TEST(DistanceGrid, StaysFiniteFarAwayAndPassesOnWhatIsNotANumber) {
 }
 
 TEST(DistanceGrid, ComesBackFromItsBytesBitByBit) {
-  for (const auto& [name, mesh] : solids()) {
+  for (const auto& [name, mesh] : named_meshes()) {
     const DistanceGrid grid(mesh, 8);
     const std::string bytes = grid.bytes();
     const DistanceGrid same{std::string_view(bytes)};

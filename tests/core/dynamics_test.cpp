@@ -157,7 +157,7 @@ TEST_P(EveryModelsDynamics, GivesTheSameForcesWithAndWithoutSubtreeSums) {
 }
 
 /// The model moved rigidly by X_0W, gravity with it.
-Model moved(const Model& model, const RigidTransform<double>& X_0W) {
+Model moved_with_gravity(const Model& model, const RigidTransform<double>& X_0W) {
   ModelBuilder builder(model.name(), model.units());
   builder.set_gravity(X_0W.R * model.gravity());
   for (const Link& link : model.links()) {
@@ -172,7 +172,7 @@ Model moved(const Model& model, const RigidTransform<double>& X_0W) {
 
 TEST_P(EveryModelsDynamics, DoesNotDependOnTheWorldFrame) {
   const State state = testing::random_state(model, random);
-  const Model other = moved(model, {random.rotation(), random.vector3(2.0)});
+  const Model other = moved_with_gravity(model, {random.rotation(), random.vector3(2.0)});
   EXPECT_LT(relative_gap(id_at(other, state), id_at(model, state)), 1e-12);
   EXPECT_LT(relative_gap(mass_at(other, state.q), mass_at(model, state.q)), 1e-12);
 }

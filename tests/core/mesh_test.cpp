@@ -26,7 +26,7 @@ TriangleMesh tetrahedron() {
           {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
 
-std::string refusal(const TriangleMesh& mesh) {
+std::string solid_refusal(const TriangleMesh& mesh) {
   try {
     check_solid(mesh);
   } catch (const InvalidInput& error) {
@@ -38,7 +38,7 @@ std::string refusal(const TriangleMesh& mesh) {
 TEST(SolidMoments, AreThoseOfABox) {
   const Eigen::Vector3d size(2.0, 3.0, 5.0);
   const TriangleMesh mesh = box(size);
-  EXPECT_EQ(refusal(mesh), "accepted");
+  EXPECT_EQ(solid_refusal(mesh), "accepted");
   const SolidMoments moments = solid_moments(mesh);
   EXPECT_NEAR(moments.volume, 30.0, 1e-13);
   EXPECT_LT((moments.centre - size / 2.0).norm(), 1e-14);
@@ -65,7 +65,7 @@ TEST(SolidMoments, MoveAndTurnWithTheMesh) {
   const Eigen::Vector3d p(100.0, -200.0, 300.0);
   TriangleMesh moved = mesh;
   for (Eigen::Vector3d& point : moved.vertices) point = R * point + p;
-  EXPECT_EQ(refusal(moved), "accepted");
+  EXPECT_EQ(solid_refusal(moved), "accepted");
   const SolidMoments other = solid_moments(moved);
   EXPECT_NEAR(other.volume, moments.volume, 1e-13);
   EXPECT_LT((other.centre - R * moments.centre - p).norm(), 1e-12);
@@ -82,35 +82,35 @@ TEST(SolidMoments, ScaleWithTheFifthPower) {
 TEST(CheckSolid, RefusesWithTheWholeMessage) {
   TriangleMesh mesh = tetrahedron();
   mesh.triangles.clear();
-  EXPECT_EQ(refusal(mesh), "mesh: no triangle; a solid needs at least 4");
+  EXPECT_EQ(solid_refusal(mesh), "mesh: no triangle; a solid needs at least 4");
   mesh = tetrahedron();
   mesh.vertices[1].y() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(refusal(mesh), "mesh: vertex 2 is (1, nan, 0); coordinates must be finite");
+  EXPECT_EQ(solid_refusal(mesh), "mesh: vertex 2 is (1, nan, 0); coordinates must be finite");
   mesh = tetrahedron();
   mesh.triangles[2][1] = 4;
-  EXPECT_EQ(refusal(mesh), "mesh: triangle 3 has vertex 5; there are 4");
+  EXPECT_EQ(solid_refusal(mesh), "mesh: triangle 3 has vertex 5; there are 4");
   mesh = tetrahedron();
   mesh.vertices[2] = {2.0, 0.0, 0.0};
-  EXPECT_EQ(refusal(mesh),
+  EXPECT_EQ(solid_refusal(mesh),
             "mesh: triangle 1 at (0, 0, 0) has no area; its corners must not lie on a line");
   mesh = tetrahedron();
   mesh.triangles.pop_back();
-  EXPECT_EQ(refusal(mesh),
+  EXPECT_EQ(solid_refusal(mesh),
             "mesh: the edge from (0, 1, 0) to (1, 0, 0) has one triangle; a closed surface has two "
             "at each edge");
   mesh = tetrahedron();
   mesh.triangles.push_back(mesh.triangles[0]);
-  EXPECT_EQ(refusal(mesh),
+  EXPECT_EQ(solid_refusal(mesh),
             "mesh: the edge from (0, 0, 0) to (0, 1, 0) has 3 triangles; a closed surface has two "
             "at each edge");
   mesh = tetrahedron();
   std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
-  EXPECT_EQ(refusal(mesh),
+  EXPECT_EQ(solid_refusal(mesh),
             "mesh: the edge from (0, 0, 0) to (1, 0, 0) has two triangles of opposite orientation; "
             "all corners must run counter-clockwise seen from outside");
   mesh = tetrahedron();
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-  EXPECT_EQ(refusal(mesh).substr(0, 49), "mesh: the surface encloses the volume -0.166667; ");
+  EXPECT_EQ(solid_refusal(mesh).substr(0, 49), "mesh: the surface encloses the volume -0.166667; ");
 }
 
 TEST(MergeEqualVertices, ClosesASurfaceOfLooseTriangles) {
@@ -127,7 +127,7 @@ TEST(MergeEqualVertices, ClosesASurfaceOfLooseTriangles) {
   const TriangleMesh merged = merge_equal_vertices(loose);
   EXPECT_TRUE(is_closed(merged));
   EXPECT_EQ(merged.vertices.size(), 4U);
-  EXPECT_EQ(refusal(merged), "accepted");
+  EXPECT_EQ(solid_refusal(merged), "accepted");
 }
 
 }  // namespace

@@ -12,12 +12,10 @@
 namespace hbar {
 namespace {
 
+using testing::brick;
+using testing::kInfinity;
+using testing::kNan;
 using testing::message_of;
-
-const double kNan = std::nan("");
-const double kInfinity = std::numeric_limits<double>::infinity();
-
-Body brick(const std::string& name = "b") { return solid_body(name, Cuboid{{1.0, 2.0, 3.0}}, 1.0); }
 
 Joint hinge(const std::string& name = "j") { return {.name = name, .kind = RevoluteJoint{}}; }
 

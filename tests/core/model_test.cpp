@@ -10,9 +10,8 @@
 namespace hbar {
 namespace {
 
+using testing::brick;
 using testing::message_of;
-
-Body brick(const std::string& name) { return solid_body(name, Cuboid{{1.0, 2.0, 3.0}}, 1.0); }
 
 /// Three links: a hinge, a sliding table below it and a free body beside them; two motors.
 ModelBuilder small_builder() {

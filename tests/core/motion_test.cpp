@@ -10,12 +10,11 @@
 namespace hbar {
 namespace {
 
+using testing::kStates;
 using testing::Random;
 using testing::relative_gap;
 using testing::State;
 using Vector6d = Vector6<double>;
-
-constexpr int kStates = 20;
 
 /// How every node of a model moves at a state.
 Motion<double> motion_at(const Model& model, const State& state) {

@@ -7,13 +7,14 @@
 #include <tuple>
 
 #include "tests/core/random_model.h"
+#include "tests/support/numerics.h"
 
 namespace hbar {
 namespace {
 
-const double kInfinity = std::numeric_limits<double>::infinity();
+using testing::kInfinity;
 
-constexpr ContactCoefficients kFirm = {.kn = 1e4, .kt = 20.0, .mu = 0.7, .damping = 3.0};
+constexpr ContactCoefficients kFirmTable = {.kn = 1e4, .kt = 20.0, .mu = 0.7, .damping = 3.0};
 
 Body with_points(Body body, int count) {
   body.contact_points = Eigen::Matrix3Xd::Random(3, count);
@@ -31,10 +32,12 @@ Model table(Units units = Units::kMetreKilogram, unsigned mask = 0) {
   add("can", solid_body("can", Cylinder{0.5, 2.0}, 1.0));
   add("ball", solid_body("ball", Sphere{0.25}, 1.0));
   add("pill", with_points(solid_body("pill", Capsule{0.3, 0.6}, 1.0), 1));
-  builder.add_contact({.link = 0, .surface = Plane{}, .coefficients = kFirm});
-  builder.add_contact({.name = "grip", .link = 0, .other = 1, .coefficients = kFirm});
-  builder.add_contact(
-      {.link = 2, .surface = Plane{}, .coefficients = kFirm, .normal_law = NormalLaw::kLinear});
+  builder.add_contact({.link = 0, .surface = Plane{}, .coefficients = kFirmTable});
+  builder.add_contact({.name = "grip", .link = 0, .other = 1, .coefficients = kFirmTable});
+  builder.add_contact({.link = 2,
+                       .surface = Plane{},
+                       .coefficients = kFirmTable,
+                       .normal_law = NormalLaw::kLinear});
   return builder.build();
 }
 

@@ -11,11 +11,10 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using testing::kStates;
 using testing::Random;
 using testing::relative_gap;
 using testing::State;
-
-constexpr int kStates = 20;
 
 class EveryModelsPullback : public ::testing::TestWithParam<unsigned> {
  protected:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <vector>
 
 #include "hbar/core/error.h"
@@ -30,6 +31,11 @@ namespace hbar::testing {
           Free3dEulerJoint{},
           Free3dExpJoint{},
           UniversalJoint{random.direction(), random.direction()}};
+}
+
+/// A body with sides of three lengths.
+[[nodiscard]] inline Body brick(const std::string& name = "b") {
+  return solid_body(name, Cuboid{{1.0, 2.0, 3.0}}, 1.0);
 }
 
 [[nodiscard]] inline Body random_body(Random& random) {
@@ -196,6 +202,9 @@ inline void add_random_sensors(ModelBuilder& builder, Random& random) {
 
 /// The same with contacts.
 [[nodiscard]] inline Model random_contact_model(unsigned seed) { return random_model(seed, true); }
+
+/// How many random states of a model a claim is put to.
+inline constexpr int kStates = 20;
 
 /// A state and accelerations, all entries of order one.
 struct State {

@@ -21,7 +21,7 @@ using testing::slopes;
 using testing::with_slope;
 
 /// Rotation vectors of every size that a chart meets, several directions each.
-std::vector<Vector3d> rotation_vectors() {
+std::vector<Vector3d> vectors_of_every_size() {
   Random random(1);
   std::vector<Vector3d> out;
   for (const double angle : {0.0, 1e-300, 1e-9, 1e-4, 1.0, 2.9999, 3.0, 3.0001, 5.0, 6.0}) {
@@ -38,7 +38,7 @@ Vector3<Dual> along(const Vector3d& x, const Vector3d& d) { return with_slope(x,
 Vector3d unskew(const Matrix3d& m) { return {m(2, 1), m(0, 2), m(1, 0)}; }
 
 TEST(ExpRotation, IsOrthonormalAndTurnsAboutItsVectorByItsLength) {
-  for (const Vector3d& r : rotation_vectors()) {
+  for (const Vector3d& r : vectors_of_every_size()) {
     const Matrix3d R = exp_rotation(r);
     EXPECT_LT(largest((R.transpose() * R - Matrix3d::Identity()).eval()), 1e-14) << r;
     EXPECT_GT(R.determinant(), 0.0);
@@ -61,7 +61,7 @@ TEST(AxisRotation, IsTheExponentialOfAngleTimesAxisWithItsDerivative) {
 
 TEST(RightJacobian, IsTheDerivativeOfTheExponential) {
   Random random(3);
-  for (const Vector3d& r : rotation_vectors()) {
+  for (const Vector3d& r : vectors_of_every_size()) {
     const Vector3d d = random.vector3();
     const Matrix3d dR = slopes(exp_rotation<Dual>(along(r, d)));
     const Matrix3d W = exp_rotation(r).transpose() * dR;
@@ -72,7 +72,7 @@ TEST(RightJacobian, IsTheDerivativeOfTheExponential) {
 
 TEST(ExponentialRates, AreTheDerivativesOfTheRightJacobian) {
   Random random(4);
-  for (const Vector3d& r : rotation_vectors()) {
+  for (const Vector3d& r : vectors_of_every_size()) {
     const Vector3d rate = random.vector3(2.0);
     const Vector3d rate_dot = random.vector3(3.0);
     const ExponentialRates<double> k = exponential_rates(r, rate, rate_dot);

@@ -36,7 +36,7 @@ struct SlicedSolid {
   std::function<Slice(double)> slice;
 };
 
-std::vector<SlicedSolid> every_solid() {
+std::vector<SlicedSolid> every_sliced_solid() {
   return {
       {"cuboid",
        Cuboid{{1.0, 2.0, 3.0}},
@@ -79,7 +79,7 @@ Eigen::Vector4d integrate(const SlicedSolid& solid, double density) {
 
 TEST(EverySolid, HasTheMassAndMomentsOfItsSlices) {
   const double density = 2.5;
-  for (const SlicedSolid& solid : every_solid()) {
+  for (const SlicedSolid& solid : every_sliced_solid()) {
     const MassProperties properties = solid_mass_properties(solid.shape, density);
     const Eigen::Vector4d sums = integrate(solid, density);
     const Eigen::Vector3d moments(sums[2] + sums[3], sums[1] + sums[3], sums[1] + sums[2]);

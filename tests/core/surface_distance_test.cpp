@@ -19,11 +19,10 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using testing::kNan;
 using testing::largest;
 using testing::Random;
 using testing::relative_gap;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// φ = (xᵀ A x − 1) / 2 + (b·x)³ / 6: no distance, with all three derivatives.
 class CubicField final : public DistanceField {

@@ -70,7 +70,7 @@ double brute_force(const TriangleMesh& mesh, const Eigen::Vector3d& x) {
   return is_inside(mesh, x) ? -distance : distance;
 }
 
-std::string refusal(const TriangleMesh& mesh) {
+std::string distance_refusal(const TriangleMesh& mesh) {
   try {
     const TriangleDistance distance(mesh);
   } catch (const InvalidInput& error) {
@@ -229,22 +229,23 @@ TEST(TriangleDistance, MergesLooseTriangles) {
 TEST(TriangleDistance, RefusesWhatBoundsNoSolidAndSaysWhere) {
   TriangleMesh mesh = box_mesh({1.0, 1.0, 1.0});
   mesh.triangles.pop_back();
-  EXPECT_EQ(refusal(mesh),
+  EXPECT_EQ(distance_refusal(mesh),
             "mesh: the edge from (0.5, -0.5, 0.5) to (0.5, 0.5, 0.5) has one triangle; a closed "
             "surface has two at each edge");
   mesh = box_mesh({1.0, 1.0, 1.0});
   std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
   EXPECT_EQ(
-      refusal(mesh).substr(0, 87),
+      distance_refusal(mesh).substr(0, 87),
       "mesh: the edge from (0.5, -0.5, 0.5) to (-0.5, 0.5, 0.5) has two triangles of opposite ");
   mesh = box_mesh({1.0, 1.0, 1.0});
   mesh.triangles[3][0] = 8;
-  EXPECT_EQ(refusal(mesh), "mesh: triangle 4 has vertex 9; there are 8");
+  EXPECT_EQ(distance_refusal(mesh), "mesh: triangle 4 has vertex 9; there are 8");
   mesh = box_mesh({1.0, 1.0, 1.0});
   mesh.triangles.pop_back();
   mesh.vertices[7].x() = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(refusal(mesh), "mesh: vertex 8 is (inf, 0.5, 0.5); coordinates must be finite");
-  EXPECT_EQ(refusal({}), "mesh: no triangle; a solid needs at least 4");
+  EXPECT_EQ(distance_refusal(mesh),
+            "mesh: vertex 8 is (inf, 0.5, 0.5); coordinates must be finite");
+  EXPECT_EQ(distance_refusal({}), "mesh: no triangle; a solid needs at least 4");
 }
 
 }  // namespace

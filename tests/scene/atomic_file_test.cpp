@@ -1,7 +1,6 @@
 #include "hbar/scene/atomic_file.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
@@ -11,32 +10,14 @@
 
 #include "hbar/core/error.h"
 #include "hbar/scene/text_file.h"
+#include "tests/scene/temporary_folder.h"
 
 namespace hbar::scene {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// An empty folder that is removed with what it holds.
-class Folder {
- public:
-  Folder() {
-    std::string name = testing::TempDir() + "hbar_atomic_XXXXXX";
-    path_ = ::mkdtemp(name.data());
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() { fs::remove_all(path_); }
-  [[nodiscard]] fs::path operator/(const char* name) const { return path_ / name; }
-  [[nodiscard]] std::ptrdiff_t count() const {
-    return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
-  }
-
- private:
-  fs::path path_;
-};
-
-std::string refusal(const fs::path& path, const std::string& text = "text") {
+std::string write_refusal(const fs::path& path, const std::string& text = "text") {
   try {
     write_file_atomically(path, text);
   } catch (const IoError& error) {
@@ -46,7 +27,7 @@ std::string refusal(const fs::path& path, const std::string& text = "text") {
 }
 
 TEST(AtomicFile, IsWrittenAndReplaced) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_file_atomically(folder / "a", "one");
   EXPECT_EQ(read_text_file(folder / "a"), "one");
   write_file_atomically(folder / "a", std::string(300000, 'y'));
@@ -57,7 +38,7 @@ TEST(AtomicFile, IsWrittenAndReplaced) {
 }
 
 TEST(AtomicFile, KeepsPermissionsAndLinks) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_file_atomically(folder / "a", "one");
   fs::permissions(folder / "a", fs::perms::owner_read | fs::perms::owner_write);
   fs::create_symlink("a", folder / "link");
@@ -69,7 +50,7 @@ TEST(AtomicFile, KeepsPermissionsAndLinks) {
 }
 
 TEST(AtomicFile, GetsThePermissionsOfANewFile) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const mode_t old = ::umask(0027);
   write_file_atomically(folder / "a", "one");
   ::umask(old);
@@ -77,25 +58,25 @@ TEST(AtomicFile, GetsThePermissionsOfANewFile) {
 }
 
 TEST(AtomicFile, SaysWhyItCannotBeWritten) {
-  const Folder folder;
-  EXPECT_EQ(refusal("/no/such/folder/a"),
+  const TemporaryFolder folder;
+  EXPECT_EQ(write_refusal("/no/such/folder/a"),
             "/no/such/folder/a: cannot be written: No such file or directory");
-  EXPECT_EQ(refusal("/"), "/: cannot be written: Is a directory");
-  EXPECT_EQ(refusal(""), "(no name): cannot be written: No such file or directory");
-  EXPECT_EQ(refusal("/dev/full"), "/dev/full: cannot be written: No space left on device");
-  EXPECT_EQ(refusal("/dev/null"), "was written");
+  EXPECT_EQ(write_refusal("/"), "/: cannot be written: Is a directory");
+  EXPECT_EQ(write_refusal(""), "(no name): cannot be written: No such file or directory");
+  EXPECT_EQ(write_refusal("/dev/full"), "/dev/full: cannot be written: No space left on device");
+  EXPECT_EQ(write_refusal("/dev/null"), "was written");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
 TEST(AtomicFile, AFailedWriteLeavesTheOldFileAlone) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_file_atomically(folder / "a", "old");
   rlimit old_limit = {};
   ::getrlimit(RLIMIT_FSIZE, &old_limit);
   const rlimit small = {1000, old_limit.rlim_max};
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   ::setrlimit(RLIMIT_FSIZE, &small);
-  const std::string message = refusal(folder / "a", std::string(5000, 'z'));
+  const std::string message = write_refusal(folder / "a", std::string(5000, 'z'));
   ::setrlimit(RLIMIT_FSIZE, &old_limit);
   std::signal(SIGXFSZ, old_handler);
   EXPECT_EQ(message, (folder / "a").string() + ": cannot be written: File too large");

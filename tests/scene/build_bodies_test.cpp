@@ -12,12 +12,10 @@
 namespace hbar::scene {
 namespace {
 
-constexpr const char* kScenes = HBAR_SOURCE_DIR "/tests/golden/scenes";
-
 /// A folder with files of contact points, for one test.
-class MadeBodies : public testing::Test {
+class MadeBodies : public ::testing::Test {
  protected:
-  MadeBodies() : folder_(std::filesystem::path(testing::TempDir()) / "hbar_build_bodies") {
+  MadeBodies() : folder_(std::filesystem::path(::testing::TempDir()) / "hbar_build_bodies") {
     std::filesystem::create_directories(folder_);
     std::filesystem::copy_file(std::string(kScenes) + "/wedge.obj", folder_ / "wedge.obj",
                                std::filesystem::copy_options::overwrite_existing);

@@ -24,9 +24,9 @@ std::string scene_text(const std::string& section) {
 }
 
 /// A folder for what a mesh leaves behind.
-class Contacts : public testing::Test {
+class Contacts : public ::testing::Test {
  protected:
-  Contacts() : folder_(std::filesystem::path(testing::TempDir()) / "hbar_build_contacts") {
+  Contacts() : folder_(std::filesystem::path(::testing::TempDir()) / "hbar_build_contacts") {
     std::filesystem::create_directories(folder_);
     std::filesystem::copy_file(HBAR_SOURCE_DIR "/tests/golden/scenes/wedge.obj",
                                folder_ / "wedge.obj",

@@ -12,8 +12,6 @@
 namespace hbar::scene {
 namespace {
 
-constexpr const char* kScenes = HBAR_SOURCE_DIR "/tests/golden/scenes";
-
 Model recorded(const std::string& name) {
   return build_model(read_scene(std::string(kScenes) + "/" + name + ".xml"));
 }
@@ -110,8 +108,6 @@ Scene two_links(const std::string& joint, const std::string& body) {
       "a.xml", kScenes);
 }
 
-const std::string kBall = "<body type=\"sphere\" radius=\"1\"/>";
-
 TEST(BuildModel, PlacesWorldJointsInTheWorld) {
   const Model model =
       build_model(two_links("<joint type=\"revolute\" frame=\"WORLD\" pos=\"4 5 6\" "
@@ -174,7 +170,7 @@ TEST(BuildModel, TakesForcesMotorsAndEndEffectors) {
 }
 
 TEST(BuildModel, SaysWhichBodyHasABadMesh) {
-  const std::filesystem::path folder = testing::TempDir();
+  const std::filesystem::path folder = ::testing::TempDir();
   std::ofstream(folder / "hbar_open.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   std::ofstream(folder / "hbar_bad.obj") << "v 0 0\n";
   const auto scene = [&folder](const std::string& file) {

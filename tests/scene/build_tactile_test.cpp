@@ -9,8 +9,6 @@
 namespace hbar::scene {
 namespace {
 
-constexpr const char* kScenes = HBAR_SOURCE_DIR "/tests/golden/scenes";
-
 TEST(RectangularSensors, RunAlongTheirSecondAxisFirst) {
   const Model model = build_model(read_scene(std::string(kScenes) + "/tactile_small.xml"));
   ASSERT_EQ(model.tactile_sensors().size(), 1U);
@@ -34,9 +32,9 @@ TEST(RectangularSensors, RunAlongTheirSecondAxisFirst) {
 }
 
 /// A folder with files of sensor points, for one test.
-class Sensors : public testing::Test {
+class Sensors : public ::testing::Test {
  protected:
-  Sensors() : folder_(std::filesystem::path(testing::TempDir()) / "hbar_build_tactile") {
+  Sensors() : folder_(std::filesystem::path(::testing::TempDir()) / "hbar_build_tactile") {
     std::filesystem::create_directories(folder_);
     std::filesystem::copy_file(std::string(kScenes) + "/wedge.obj", folder_ / "wedge.obj",
                                std::filesystem::copy_options::overwrite_existing);
@@ -64,8 +62,6 @@ class Sensors : public testing::Test {
 
   std::filesystem::path folder_;
 };
-
-const std::string kBall = "<body type=\"sphere\" radius=\"1\"/>";
 
 TEST_F(Sensors, TakeAxesOfAnyAngle) {
   const Model model = build_model(

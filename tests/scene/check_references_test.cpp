@@ -42,7 +42,7 @@ TEST(References, ToBodiesThatHavePointsAreTaken) {
   }
 }
 
-const std::vector<BadScene> kRefused = {
+const std::vector<BadScene> kRefusedReferences = {
     {"motor of a missing joint", scene_with_section("<actuator><motor joint=\"jj\"/></actuator>"),
      "bad.xml:2: <motor joint=\"jj\">: no joint has this name; did you mean 'j'?"},
     {"motor of a fixed joint", scene_with_section("<actuator><motor joint=\"k\"/></actuator>"),
@@ -115,7 +115,7 @@ const std::vector<BadScene> kRefused = {
      "bad.xml:6: <body name=\"b\">: the body of line 2 has this name; names of bodies must differ"},
 };
 
-TEST(References, RefusesWithTheWholeMessage) { expect_refused(kRefused); }
+TEST(References, RefusesWithTheWholeMessage) { expect_refused(kRefusedReferences); }
 
 }  // namespace
 }  // namespace hbar::scene

@@ -1,7 +1,6 @@
 #include "hbar/scene/distance_cache.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "hbar/scene/atomic_file.h"
 #include "hbar/scene/text_file.h"
 #include "tests/core/solid_meshes.h"
+#include "tests/scene/temporary_folder.h"
 
 namespace hbar::scene {
 namespace {
@@ -20,35 +20,12 @@ namespace fs = std::filesystem;
 
 constexpr int kCells = 8;
 
-/// An empty folder that is removed with what it holds.
-class Folder {
- public:
-  Folder() {
-    std::string name = testing::TempDir() + "hbar_distance_XXXXXX";
-    path_ = ::mkdtemp(name.data());
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    fs::permissions(path_, fs::perms::owner_all);
-    fs::remove_all(path_);
-  }
-  [[nodiscard]] const fs::path& path() const { return path_; }
-  [[nodiscard]] fs::path operator/(const char* name) const { return path_ / name; }
-  [[nodiscard]] std::ptrdiff_t count() const {
-    return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
-  }
-
- private:
-  fs::path path_;
-};
-
 std::string bytes_of(const std::shared_ptr<const DistanceField>& field) {
   return dynamic_cast<const DistanceGrid&>(*field).bytes();
 }
 
 TEST(DistanceCache, IsWrittenOnceAndReadAgain) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const TriangleMesh mesh = star_mesh(1, 1);
   const fs::path path = distance_cache_path(mesh, kCells, folder / "a.obj");
   const std::string expected = DistanceGrid(mesh, kCells).bytes();
@@ -86,7 +63,7 @@ TEST(DistanceCache, IsNamedAfterAllThatTheGridDependsOn) {
 }
 
 TEST(DistanceCache, KeepsAlteredMeshesApart) {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const unsigned seed : {1U, 2U}) {
     const TriangleMesh mesh = star_mesh(1, seed);
     const auto field = cached_mesh_distance(mesh, kCells, folder / "a.obj");
@@ -96,7 +73,7 @@ TEST(DistanceCache, KeepsAlteredMeshesApart) {
 }
 
 TEST(DistanceCache, IsMadeAnewWhereDamaged) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const TriangleMesh mesh = star_mesh(1, 1);
   const fs::path path = distance_cache_path(mesh, kCells, folder / "a.obj");
   const std::string good = DistanceGrid(mesh, kCells).bytes();
@@ -116,18 +93,18 @@ TEST(DistanceCache, GoesWithoutAFileWhereNoneCanBe) {
   const std::string expected = DistanceGrid(mesh, kCells).bytes();
   EXPECT_EQ(bytes_of(cached_mesh_distance(mesh, kCells, "/no/such/folder/a.obj")), expected);
 
-  const Folder folder;
+  const TemporaryFolder folder;
   fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
   EXPECT_EQ(bytes_of(cached_mesh_distance(mesh, kCells, folder / "a.obj")), expected);
   EXPECT_EQ(folder.count(), ::geteuid() == 0 ? 1 : 0);  // root may write anywhere
 
-  const Folder taken;  // by a folder of the file's name
+  const TemporaryFolder taken;  // by a folder of the file's name
   fs::create_directory(distance_cache_path(mesh, kCells, taken / "a.obj"));
   EXPECT_EQ(bytes_of(cached_mesh_distance(mesh, kCells, taken / "a.obj")), expected);
 }
 
 TEST(DistanceCache, RefusesWhatBoundsNoSolidAndSaysWhere) {
-  const Folder folder;
+  const TemporaryFolder folder;
   TriangleMesh mesh = box_mesh({1.0, 1.0, 1.0});
   mesh.triangles.pop_back();
   try {

@@ -134,7 +134,7 @@ TEST(Links, LimitsThatPullAreOnlyNoticed) {
                                      "configuration 0; their spring pulls it"});
 }
 
-const std::vector<BadScene> kRefused = {
+const std::vector<BadScene> kRefusedLinks = {
     {"unknown type", scene_with_joint("<joint type=\"hinge\"/>"),
      "bad.xml:4: <joint type=\"hinge\">: unknown type; type takes one of fixed, revolute, "
      "prismatic, planar, translational, free2d, spherical-euler, spherical-exp, free3d-euler, "
@@ -242,7 +242,7 @@ const std::vector<BadScene> kRefused = {
      "parent"},
 };
 
-TEST(Links, RefusesWithTheWholeMessage) { expect_refused(kRefused); }
+TEST(Links, RefusesWithTheWholeMessage) { expect_refused(kRefusedLinks); }
 
 }  // namespace
 }  // namespace hbar::scene

@@ -96,7 +96,7 @@ TEST(Sections, NoticeGravityOfTheOtherUnits) {
                                      "is 0 0 -980 metres per second squared"});
 }
 
-const std::vector<BadScene> kRefused = {
+const std::vector<BadScene> kRefusedSections = {
     {"runge-kutta", scene_with_section("<option integrator=\"rk4\"/>"),
      "bad.xml:2: <option integrator=\"rk4\">: explicit integrators are not supported; integrator "
      "takes one of BDF1, BDF2, SDIRK2"},
@@ -175,7 +175,7 @@ const std::vector<BadScene> kRefused = {
      "bad.xml:2: <sphere radius=\"0\">: out of range; radius takes 1 number > 0"},
 };
 
-TEST(Sections, RefusesWithTheWholeMessage) { expect_refused(kRefused); }
+TEST(Sections, RefusesWithTheWholeMessage) { expect_refused(kRefusedSections); }
 
 }  // namespace
 }  // namespace hbar::scene

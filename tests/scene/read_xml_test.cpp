@@ -8,8 +8,6 @@
 namespace hbar::scene {
 namespace {
 
-constexpr const char* kScenes = HBAR_SOURCE_DIR "/tests/golden/scenes";
-
 TEST(ReadScene, ReadsEveryRecordedScene) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
@@ -156,7 +154,7 @@ TEST(ReadScene, EveryMutationIsReadOrRefused) {
   EXPECT_GT(refused, 500);
 }
 
-const std::vector<BadScene> kRefused = {
+const std::vector<BadScene> kRefusedFiles = {
     {"no link", "<redmax model=\"x\"/>",
      "bad.xml:1: <redmax>: the scene has no link; <robot> holds at least one <link>"},
     {"near element", scene_with_section("<robt/>"),
@@ -179,7 +177,7 @@ const std::vector<BadScene> kRefused = {
      "bad.xml:2: <visual>: cannot be a default; only attributes can"},
 };
 
-TEST(ReadScene, RefusesWithTheWholeMessage) { expect_refused(kRefused); }
+TEST(ReadScene, RefusesWithTheWholeMessage) { expect_refused(kRefusedFiles); }
 
 }  // namespace
 }  // namespace hbar::scene

@@ -10,6 +10,11 @@
 
 namespace hbar::scene {
 
+/// The folder of the recorded scenes.
+inline constexpr const char* kScenes = HBAR_SOURCE_DIR "/tests/golden/scenes";
+
+inline const std::string kBall = "<body type=\"sphere\" radius=\"1\"/>";
+
 /// A scene of one link "a" around a joint in line 4.
 inline std::string scene_with_joint(const std::string& joint) {
   return "<redmax>\n<robot>\n<link name=\"a\">\n" + joint +

@@ -12,7 +12,7 @@ namespace hbar::scene {
 namespace {
 
 TEST(TextFile, IsReadToTheLastByte) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "hbar_text_file";
+  const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "hbar_text_file";
   std::string text(200000, 'x');
   text += '\0';
   text += "end";

@@ -8,19 +8,19 @@
 namespace hbar::scene {
 namespace {
 
-const Link& only_link(const Scene& scene) { return scene.description.robots.at(0).links.at(0); }
+const Link& link_of(const Scene& scene) { return scene.description.robots.at(0).links.at(0); }
 
 TEST(JointAttributes, DefaultToThoseOfTheStruct) {
   const Scene scene = read_scene_text(scene_with_joint("<joint type=\"fixed\"/>"), "a.xml");
   Joint joint;
   joint.name = "a";
-  EXPECT_EQ(only_link(scene).joint, joint);
+  EXPECT_EQ(link_of(scene).joint, joint);
   EXPECT_EQ(joint_attributes().size(), find_element("joint")->attributes.size());
 }
 
 TEST(BodyAttributes, DefaultToThoseOfTheStructs) {
   const auto read = [](const std::string& body) {
-    return only_link(read_scene_text(scene_with_body(body), "a.xml")).body.shape;
+    return link_of(read_scene_text(scene_with_body(body), "a.xml")).body.shape;
   };
   EXPECT_EQ(read("<body type=\"cuboid\" size=\"1 1 1\"/>"), BodyShape(CuboidBody()));
   EXPECT_EQ(read("<body type=\"sphere\" radius=\"1\"/>"), BodyShape(SphereBody()));

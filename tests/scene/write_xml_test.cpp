@@ -9,8 +9,6 @@
 namespace hbar::scene {
 namespace {
 
-constexpr const char* kScenes = HBAR_SOURCE_DIR "/tests/golden/scenes";
-
 Link make_link(const std::string& name, int parent, const BodyShape& shape) {
   Link link;
   link.name = name;
@@ -164,7 +162,7 @@ TEST(WriteScene, RefusesWhatAFileCannotSay) {
 
 TEST(WriteScene, WritesAFileThatReadsBackEqual) {
   const std::filesystem::path path =
-      std::filesystem::path(testing::TempDir()) / "hbar_write_scene.xml";
+      std::filesystem::path(::testing::TempDir()) / "hbar_write_scene.xml";
   const Description description = everything();
   write_scene(path, description);
   EXPECT_EQ(read_scene(path).description, description);

@@ -7,7 +7,7 @@
 namespace hbar::scene {
 namespace {
 
-std::string refusal(const std::string& text) {
+std::string parse_refusal(const std::string& text) {
   tinyxml2::XMLDocument document;
   try {
     parse_document(text, "bad.xml", document);
@@ -30,14 +30,14 @@ TEST(XmlDocument, GivesTheRoot) {
 TEST(XmlDocument, RefusesBytesThatAreNoText) {
   using std::string_literals::operator""s;
   const std::string utf16 = std::string("bad.xml:1: the file is UTF-16") + kExpected;
-  EXPECT_EQ(refusal("\xff\xfe<\0r\0"s), utf16);
-  EXPECT_EQ(refusal("\xfe\xff\0<\0r"s), utf16);
-  EXPECT_EQ(refusal("<\0r\0e\0"s), utf16);
-  EXPECT_EQ(refusal("\0<\0r\0e"s), utf16);
-  EXPECT_EQ(refusal("<redmax>\n\0</redmax>"s),
+  EXPECT_EQ(parse_refusal("\xff\xfe<\0r\0"s), utf16);
+  EXPECT_EQ(parse_refusal("\xfe\xff\0<\0r"s), utf16);
+  EXPECT_EQ(parse_refusal("<\0r\0e\0"s), utf16);
+  EXPECT_EQ(parse_refusal("\0<\0r\0e"s), utf16);
+  EXPECT_EQ(parse_refusal("<redmax>\n\0</redmax>"s),
             std::string("bad.xml:2: the file is binary: it has a byte \\x00") + kExpected);
-  EXPECT_EQ(refusal("\x7f"
-                    "ELF\x02\x01"),
+  EXPECT_EQ(parse_refusal("\x7f"
+                          "ELF\x02\x01"),
             std::string("bad.xml:1: the file is binary: it has a byte \\x02") + kExpected);
 }
 
@@ -45,12 +45,12 @@ TEST(XmlDocument, RefusesDeepNesting) {
   std::string text = "<redmax><robot>";
   for (int i = 0; i < 100000; ++i) text += "<link>";
   EXPECT_EQ(
-      refusal(text),
+      parse_refusal(text),
       concat("bad.xml:1: elements are nested too deeply; at most ", TINYXML2_MAX_ELEMENT_DEPTH,
              " levels are read; write deep chains of links flat, with parent=\"LINK\""));
 }
 
-const std::vector<BadScene> kRefused = {
+const std::vector<BadScene> kRefusedDocuments = {
     {"empty", "",
      "bad.xml:1: the file is empty; a scene is one element <redmax> ... </redmax> in UTF-8"},
     {"blank", " \n\t\n",
@@ -90,7 +90,7 @@ const std::vector<BadScene> kRefused = {
      "... </redmax> in UTF-8"},
 };
 
-TEST(XmlDocument, RefusesWithTheWholeMessage) { expect_refused(kRefused); }
+TEST(XmlDocument, RefusesWithTheWholeMessage) { expect_refused(kRefusedDocuments); }
 
 }  // namespace
 }  // namespace hbar::scene

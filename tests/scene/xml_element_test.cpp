@@ -54,7 +54,7 @@ TEST(XmlElement, NoticesWhatHasNoEffect) {
                 "a.xml:4: <joint type=\"fixed\">: axis has no effect on this type"}));
 }
 
-const std::vector<BadScene> kRefused = {
+const std::vector<BadScene> kRefusedElements = {
     {"trailing letter", scene_with_section("<option timestep=\"1.5x\"/>"),
      "bad.xml:2: <option timestep=\"1.5x\">: \"1.5x\" is not a finite number; timestep takes 1 "
      "number > 0"},
@@ -151,7 +151,7 @@ const std::vector<BadScene> kRefused = {
      "timestep takes 1 number > 0"},
 };
 
-TEST(XmlElement, RefusesWithTheWholeMessage) { expect_refused(kRefused); }
+TEST(XmlElement, RefusesWithTheWholeMessage) { expect_refused(kRefusedElements); }
 
 }  // namespace
 }  // namespace hbar::scene

@@ -283,8 +283,9 @@ TEST(Newton, AllocatesNothing) {
     x << -1.2, 1.0;
     EXPECT_TRUE(newton.solve(system, options, x).converged());
   };
-  EXPECT_GT(testing::allocations_of([] { EXPECT_EQ(VectorXd::Ones(3).eval().size(), 3); }), 0U);
-  EXPECT_EQ(testing::allocations_of(solve), 0U);
+  EXPECT_GT(hbar::testing::allocations_of([] { EXPECT_EQ(VectorXd::Ones(3).eval().size(), 3); }),
+            0U);
+  EXPECT_EQ(hbar::testing::allocations_of(solve), 0U);
 }
 #endif
 

@@ -8,6 +8,9 @@
 
 namespace hbar::testing {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
 /// Largest absolute entry, 0 of an empty matrix, NaN if any entry is.
 template <typename Derived>
 [[nodiscard]] double largest(const Eigen::MatrixBase<Derived>& m) {

@@ -45,12 +45,12 @@ Eigen::MatrixXd columns_of(const json& rows) {
   return out;
 }
 
-double relative_gap(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+double relative_norm(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (a - b).norm() / std::max(b.norm(), 1e-300);
 }
 
 /// One golden run, repeated by hbar.
-class GoldenRun : public testing::TestWithParam<std::string> {
+class GoldenRun : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     std::ifstream file(kGolden / "runs" / (GetParam() + ".json"));
@@ -117,14 +117,15 @@ TEST_P(GoldenRun, HasTheSameTrajectoryVariablesAndObjective) {
   const TrajectoryValues values = simulator_->values(trajectory);
   const Eigen::Index steps = values.q.cols() - 1;
   EXPECT_TRUE(trajectory.chart_switches.empty());
-  EXPECT_LT(relative_gap(values.q.rightCols(steps), columns_of(golden_.at("q"))), tolerance_);
-  EXPECT_LT(relative_gap(values.qdot.rightCols(steps), columns_of(golden_.at("qdot"))), tolerance_);
+  EXPECT_LT(relative_norm(values.q.rightCols(steps), columns_of(golden_.at("q"))), tolerance_);
+  EXPECT_LT(relative_norm(values.qdot.rightCols(steps), columns_of(golden_.at("qdot"))),
+            tolerance_);
   if (values.v.rows() > 0) {
-    EXPECT_LT(relative_gap(values.v.rightCols(steps), columns_of(golden_.at("variables"))),
+    EXPECT_LT(relative_norm(values.v.rightCols(steps), columns_of(golden_.at("variables"))),
               tolerance_);
   }
   if (values.tactile.rows() > 0) {
-    EXPECT_LT(relative_gap(values.tactile.rightCols(steps), columns_of(golden_.at("tactile"))),
+    EXPECT_LT(relative_norm(values.tactile.rightCols(steps), columns_of(golden_.at("tactile"))),
               tolerance_);
   }
   const double golden_objective = golden_.at("objective");
@@ -136,7 +137,7 @@ TEST_P(GoldenRun, HasTheSameMassProperties) {
     const std::string name = body.at("name");
     const Body& ours = simulator_->model().link(simulator_->model().find_body(name)).body;
     EXPECT_NEAR(ours.mass, body.at("mass"), tolerance_ * ours.mass) << name;
-    EXPECT_LT(relative_gap(ours.inertia, vector_of(body.at("inertia"))), tolerance_) << name;
+    EXPECT_LT(relative_norm(ours.inertia, vector_of(body.at("inertia"))), tolerance_) << name;
     const Eigen::VectorXd frame = vector_of(body.at("E_ji_R_rowmajor_p"));
     EXPECT_LT((ours.X_JB.p - frame.tail<3>()).norm(), tolerance_) << name;
   }
@@ -184,14 +185,14 @@ TEST_P(GoldenRun, HasTheSameGradients) {
     const json& reference = good ? golden_.at("gradients").at(name) : differences;
     const Eigen::VectorXd expected = vector_of(reference);
     ASSERT_EQ(part.size(), expected.size()) << name;
-    EXPECT_LT(relative_gap(part, expected), gradient_bound(name))
+    EXPECT_LT(relative_norm(part, expected), gradient_bound(name))
         << name << (good ? "" : " (differences)");
     ++compared;
   }
   EXPECT_GE(compared, 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, GoldenRun, testing::ValuesIn(run_names()), [](const auto& run) {
+INSTANTIATE_TEST_SUITE_P(All, GoldenRun, ::testing::ValuesIn(run_names()), [](const auto& run) {
   std::string name = run.param;
   std::replace(name.begin(), name.end(), '.', '_');
   return name;

@@ -71,8 +71,8 @@ Matrix3d reference_rotation(const Vector3d& I, const Matrix3d& R0, const Vector3
   return runge_kutta(f, x, T, 4000).head(9).reshaped(3, 3);
 }
 
-Simulator make_simulator(const Model& model, const Integrator& integrator, double T, int steps,
-                         const ParameterSet& set = {}) {
+Simulator simulator_until(const Model& model, const Integrator& integrator, double T, int steps,
+                          const ParameterSet& set = {}) {
   SimulationOptions options;
   options.integrator = integrator.name;
   options.h = T / steps;
@@ -101,10 +101,10 @@ TEST(EveryMethod, ConvergesWithItsOrderOnADoublePendulum) {
   constexpr double kT = 1.0;
   const Model model = testing::double_pendulum();
   for (const Integrator& integrator : integrators()) {
-    Simulator any = make_simulator(model, integrator, kT, 1);
+    Simulator any = simulator_until(model, integrator, kT, 1);
     const VectorXd exact = reference_state(model, pendulum_inputs(any), kT);
     const auto state_at = [&](int n) {
-      Simulator simulator = make_simulator(model, integrator, kT, n);
+      Simulator simulator = simulator_until(model, integrator, kT, n);
       const Trajectory trajectory = simulator.rollout(pendulum_inputs(simulator)).trajectory();
       VectorXd state(4);
       state << trajectory.q_at_step(n), trajectory.qdot_at_step(n);
@@ -124,7 +124,7 @@ TEST(EveryMethod, ConvergesWithItsOrderOnADoublePendulum) {
 /// dΨ/d(p, q₀, q̇₀) of Ψ = ½ ‖v_N − target‖².
 VectorXd gradient_at(const Model& model, const ParameterSet& set, const Integrator& integrator,
                      double T, int n, const VectorXd& q0, const VectorXd& qdot0) {
-  Simulator simulator = make_simulator(model, integrator, T, n, set);
+  Simulator simulator = simulator_until(model, integrator, T, n, set);
   Inputs inputs = simulator.nominal_inputs();
   inputs.q0 = q0;
   inputs.qdot0 = qdot0;
@@ -168,7 +168,7 @@ TEST(EveryMethod, ConvergesWithItsOrderThroughAChangeOfChart) {
   const Vector3d exact = R * scene.model.end_effectors()[0].position;
   for (const Integrator& integrator : integrators()) {
     const auto error = [&](int n) {
-      Simulator simulator = make_simulator(scene.model, integrator, scene.T, n);
+      Simulator simulator = simulator_until(scene.model, integrator, scene.T, n);
       Inputs inputs = simulator.nominal_inputs();
       inputs.q0 = scene.r0;
       inputs.qdot0 = scene.rate0;

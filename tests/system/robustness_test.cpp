@@ -12,19 +12,9 @@
 namespace hbar {
 namespace {
 
+using testing::make_simulator;
 using testing::message_of;
-
-SimulationOptions options_of(const std::string& integrator, double h, int steps) {
-  SimulationOptions options;
-  options.integrator = integrator;
-  options.h = h;
-  options.steps = steps;
-  return options;
-}
-
-Simulator make_simulator(const Model& model, const SimulationOptions& options) {
-  return {model, ParameterSet::all(model), options};
-}
+using testing::options_of;
 
 /// Swings the stiff pendulum into its limit after some steps.
 Inputs swing(const Simulator& simulator) {

@@ -212,7 +212,7 @@ struct Golden {
   std::vector<std::string> suffix;  ///< of the scalars that an owner has
 };
 
-class GoldenCommand : public ToolTest, public testing::WithParamInterface<Golden> {};
+class GoldenCommand : public ToolTest, public ::testing::WithParamInterface<Golden> {};
 
 TEST_P(GoldenCommand, GivesTheGoldenTrajectoryAndGradient) {
   const Golden& which = GetParam();
@@ -268,13 +268,14 @@ const std::vector<std::string> kTransform = {"rotation.x",    "rotation.y",    "
                                              "translation.x", "translation.y", "translation.z"};
 
 INSTANTIATE_TEST_SUITE_P(Two, GoldenCommand,
-                         testing::Values(Golden{"design_1_joints.BDF2.json", "dp12_tangent",
-                                                "joints", "joint.", kTransform},
-                                         Golden{"design_8_joints.BDF1.json",
-                                                "dp4",
-                                                "bodies",
-                                                "body.",
-                                                {"mass", "inertia.x", "inertia.y", "inertia.z"}}));
+                         ::testing::Values(Golden{"design_1_joints.BDF2.json", "dp12_tangent",
+                                                  "joints", "joint.", kTransform},
+                                           Golden{
+                                               "design_8_joints.BDF1.json",
+                                               "dp4",
+                                               "bodies",
+                                               "body.",
+                                               {"mass", "inertia.x", "inertia.y", "inertia.z"}}));
 
 }  // namespace
 }  // namespace hbar::tool

@@ -102,7 +102,7 @@ struct Outcome {
 };
 
 /// A test with a folder of its own that runs the hbar command.
-class ToolTest : public testing::Test {
+class ToolTest : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string name = (std::filesystem::temp_directory_path() / "hbar_tool.XXXXXX").string();
