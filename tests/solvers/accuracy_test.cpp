@@ -15,12 +15,7 @@ using testing::message_of;
 using testing::random_block_lower;
 using testing::random_dense;
 using testing::random_sparse;
-
-SparseMatrix sparse(const Eigen::MatrixXd& dense) {
-  SparseMatrix A = dense.sparseView(0.0, 0.0);
-  A.makeCompressed();
-  return A;
-}
+using testing::sparse_of;
 
 std::unique_ptr<LinearSolver> factorized(const SparseMatrix& A) {
   auto solver = make_klu();
@@ -39,7 +34,7 @@ Eigen::MatrixXd whole_hilbert(int n, double multiple) {
 }
 
 TEST(BackwardErrors, AreThoseOfAHandComputedExample) {
-  const SparseMatrix A = sparse((Eigen::MatrixXd(2, 2) << 1.0, 2.0, 3.0, 4.0).finished());
+  const SparseMatrix A = sparse_of((Eigen::MatrixXd(2, 2) << 1.0, 2.0, 3.0, 4.0).finished());
   const Eigen::VectorXd x = Eigen::Vector2d(1.0, -1.0);
   const Eigen::VectorXd b = Eigen::Vector2d(0.0, 1.0);
   // b − A x = (1, 2) and b − Aᵀ x = (2, 3); ‖A‖∞ = 7, ‖Aᵀ‖∞ = 6.
@@ -50,7 +45,7 @@ TEST(BackwardErrors, AreThoseOfAHandComputedExample) {
 }
 
 TEST(BackwardErrors, AreZeroWhereNothingIsWrong) {
-  const SparseMatrix A = sparse(Eigen::MatrixXd::Identity(3, 3) * 2.0);
+  const SparseMatrix A = sparse_of(Eigen::MatrixXd::Identity(3, 3) * 2.0);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(3);
   const Eigen::VectorXd b = Eigen::Vector3d(2.0, 0.0, 4.0);
   EXPECT_EQ(normwise_backward_error(A, System::kPlain, zero, zero), 0.0);
@@ -88,7 +83,7 @@ TEST(BackwardErrors, FollowTheSizeOfTheError) {
 }
 
 TEST(BackwardErrors, ShowSolutionsThatAreNotNumbers) {
-  const SparseMatrix A = sparse(Eigen::MatrixXd::Identity(2, 2));
+  const SparseMatrix A = sparse_of(Eigen::MatrixXd::Identity(2, 2));
   const Eigen::VectorXd b = Eigen::VectorXd::Ones(2);
   const Eigen::VectorXd x = Eigen::Vector2d(1.0, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(std::isnan(normwise_backward_error(A, System::kPlain, x, b)));
@@ -96,7 +91,7 @@ TEST(BackwardErrors, ShowSolutionsThatAreNotNumbers) {
 }
 
 TEST(BackwardErrors, RefuseShapesThatDisagree) {
-  const SparseMatrix A = sparse(Eigen::MatrixXd::Identity(2, 2));
+  const SparseMatrix A = sparse_of(Eigen::MatrixXd::Identity(2, 2));
   EXPECT_EQ(message_of<InvalidInput>([&] {
               static_cast<void>(normwise_backward_error(A, System::kPlain, Eigen::VectorXd(3),
                                                         Eigen::VectorXd(2)));
@@ -114,7 +109,7 @@ TEST(RefinedSolution, IsRightToTheLastDigitWhereAPlainOneIsNot) {
   const Eigen::MatrixXd H = whole_hilbert(8, 360360.0);
   const Eigen::VectorXd exact = (Eigen::VectorXd(8) << 1, -2, 3, -4, 5, -6, 7, -8).finished();
   const Eigen::VectorXd b = H * exact;
-  const SparseMatrix A = sparse(H);
+  const SparseMatrix A = sparse_of(H);
   const auto solver = factorized(A);
   Eigen::VectorXd plain(8);
   solver->solve(b, plain);
@@ -162,7 +157,7 @@ TEST(EstimateCondition, KnowsHilbertMatrices) {
   // Of the 1-norm, as in Higham, Accuracy and Stability of Numerical Algorithms: for n = 2 and 3
   // 27 and 748, for n = 6 about 2.907e7.
   for (const auto& [n, expected] : {std::pair{2, 27.0}, {3, 748.0}, {6, 2.907e7}}) {
-    const SparseMatrix A = sparse(whole_hilbert(n, 360360.0));
+    const SparseMatrix A = sparse_of(whole_hilbert(n, 360360.0));
     EXPECT_NEAR(estimate_condition(*factorized(A), A), expected, 2e-4 * expected);
   }
 }
@@ -171,12 +166,12 @@ TEST(EstimateCondition, IsNotFooledByCancellation) {
   // The ascent alone starts at the mean of the columns, which is zero for this inverse.
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(6, 6);
   for (int j = 0; j < 6; ++j) inverse(0, j) = j % 2 == 0 ? 1e6 : -1e6;
-  const SparseMatrix A = sparse(inverse.inverse());
+  const SparseMatrix A = sparse_of(inverse.inverse());
   EXPECT_GE(estimate_condition(*factorized(A), A), true_condition(A) / 3.0);
 }
 
 TEST(EstimateCondition, OfANumberIsOne) {
-  const SparseMatrix A = sparse(Eigen::MatrixXd::Constant(1, 1, -5.0));
+  const SparseMatrix A = sparse_of(Eigen::MatrixXd::Constant(1, 1, -5.0));
   EXPECT_DOUBLE_EQ(estimate_condition(*factorized(A), A), 1.0);
 }
 

@@ -12,11 +12,12 @@ using testing::message_of;
 using testing::random_block_lower;
 using testing::random_sparse;
 
-const SolverOptions kBlocks = {.structure = Structure::kBlockTriangular, .block_sizes = {3, 3, 2}};
+const SolverOptions kOfThreeBlocks = {.structure = Structure::kBlockTriangular,
+                                      .block_sizes = {3, 3, 2}};
 
 TEST(CachedSolver, TakesBlockSubstitutionWhereItCanAndKluOtherwise) {
   CachedSolver cached(nullptr);
-  EXPECT_EQ(cached.factorize(random_block_lower({3, 3, 2}, 1), kBlocks, {}, 1).name(),
+  EXPECT_EQ(cached.factorize(random_block_lower({3, 3, 2}, 1), kOfThreeBlocks, {}, 1).name(),
             "block_substitution");
   EXPECT_EQ(cached.factorize(random_sparse(8, 3, 1), {}, {}, 2).name(), "klu");
 }
@@ -28,7 +29,7 @@ TEST(CachedSolver, AnalysesOncePerPattern) {
     return make_klu(options);
   });
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    cached.factorize(random_block_lower({3, 3, 2}, seed), kBlocks, {}, 1);
+    cached.factorize(random_block_lower({3, 3, 2}, seed), kOfThreeBlocks, {}, 1);
   }
   EXPECT_EQ(made, 1);
   EXPECT_EQ(cached.solver().statistics().analyses, 1);

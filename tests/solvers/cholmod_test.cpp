@@ -14,14 +14,13 @@ using testing::arrow_matrix;
 using testing::expect_agrees_with_dense;
 using testing::factorized;
 using testing::hilbert_matrix;
+using testing::kWidths;
 using testing::message_of;
 using testing::nearly_identity;
 using testing::options_of;
 using testing::random_definite;
 using testing::random_quasi_definite;
 using testing::random_sparse;
-
-constexpr auto kWidths = {IndexWidth::k32, IndexWidth::k64};
 
 SparseMatrix any_definite(unsigned seed) { return random_definite(60, 2, seed); }
 SparseMatrix any_quasi_definite(unsigned seed) { return random_quasi_definite(40, 20, seed); }

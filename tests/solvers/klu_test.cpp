@@ -8,16 +8,16 @@
 namespace hbar::solvers {
 namespace {
 
+using testing::kWidths;
 using testing::message_of;
 using testing::options_of;
 using testing::random_sparse;
 
-constexpr auto kOrderings = {Ordering::kDefault, Ordering::kNatural, Ordering::kAmd,
-                             Ordering::kColamd};
-constexpr auto kWidths = {IndexWidth::k32, IndexWidth::k64};
+constexpr auto kOrderingsOfKlu = {Ordering::kDefault, Ordering::kNatural, Ordering::kAmd,
+                                  Ordering::kColamd};
 
 TEST(Klu, AgreesWithDenseLuInEveryOrderingAndWidth) {
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kOrderingsOfKlu) {
     for (const IndexWidth width : kWidths) {
       SCOPED_TRACE(name_of(ordering));
       for (const SparseMatrix& A :
@@ -36,7 +36,7 @@ TEST(Klu, ServesNewValuesAndNewPatterns) {
   B.diagonal() *= -1.5;
   SparseMatrix zero = A;
   zero.coeffs().setZero();
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kOrderingsOfKlu) {
     for (const IndexWidth width : kWidths) {
       const auto solver = make_klu(options_of(ordering, width));
       testing::expect_serves_again(*solver, A, B, zero, random_sparse(90, 2, 1));
@@ -81,7 +81,7 @@ TEST(Klu, FindsTheBlocksOfATriangularMatrixUnlessTheOrderIsGiven) {
 
 TEST(Klu, NamesTheRowAndColumnOfASingularMatrixWithBothWidths) {
   const SparseMatrix A = testing::nearly_identity(20, {{11, 12, 1.0}, {12, 11, 1.0}});
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kOrderingsOfKlu) {
     for (const IndexWidth width : kWidths) {
       const auto solver = make_klu(options_of(ordering, width));
       solver->name_unknowns([](int index) { return concat("joint ", index); });

@@ -11,12 +11,7 @@ namespace {
 using testing::message_of;
 using testing::random_definite;
 using testing::random_dense;
-
-SparseMatrix sparse(const Eigen::MatrixXd& dense) {
-  SparseMatrix A = dense.sparseView();
-  A.makeCompressed();
-  return A;
-}
+using testing::sparse_of;
 
 TEST(LapackBand, AgreesWithBlockBanded) {
   for (const int size : {1, 5, 40}) {
@@ -44,8 +39,8 @@ TEST(LapackBand, KeepsABandThatGrowsByTheLowerOne) {
   for (int i = 0; i + 1 < 6; ++i) dense(i + 1, i) = 1.0;
   for (int i = 0; i + 2 < 6; ++i) dense(i, i + 2) = 1.0;
   const auto solver = make_lapack_band();
-  solver->analyze(sparse(dense));
-  solver->factorize(sparse(dense));
+  solver->analyze(sparse_of(dense));
+  solver->factorize(sparse_of(dense));
   EXPECT_EQ(solver->factor_info().entries, 30.0);
 }
 
@@ -55,9 +50,9 @@ TEST(LapackBand, NamesTheRowThatAPivotWasTakenFrom) {
   dense << 1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 2.0, 4.0, 1.0;
   const auto solver = make_lapack_band();
   solver->name_unknowns([](int index) { return concat("number ", index); });
-  solver->analyze(sparse(dense));
+  solver->analyze(sparse_of(dense));
   const std::string message =
-      message_of<NumericalFailure>([&] { solver->factorize(sparse(dense)); });
+      message_of<NumericalFailure>([&] { solver->factorize(sparse_of(dense)); });
   EXPECT_NE(message.find("the pivot in row 1 (number 1), column 1 (number 1) is 0;"),
             std::string::npos)
       << message;

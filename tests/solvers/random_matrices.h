@@ -19,6 +19,13 @@ inline Eigen::MatrixXd random_dense(int rows, int columns, unsigned seed) {
   return result;
 }
 
+/// The entries of a dense matrix that are not zero.
+inline SparseMatrix sparse_of(const Eigen::MatrixXd& dense) {
+  SparseMatrix A = dense.sparseView();
+  A.makeCompressed();
+  return A;
+}
+
 /// Unsymmetric with a strong diagonal and about `per_column` further entries in each column.
 inline SparseMatrix random_sparse(int size, int per_column, unsigned seed) {
   std::mt19937_64 engine(seed);

@@ -16,6 +16,8 @@
 
 namespace hbar::solvers::testing {
 
+inline constexpr auto kWidths = {IndexWidth::k32, IndexWidth::k64};
+
 using Maker = std::unique_ptr<LinearSolver> (*)(const SolverOptions&);
 
 inline SolverOptions options_of(Ordering ordering, IndexWidth width = IndexWidth::k32) {

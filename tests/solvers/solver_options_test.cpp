@@ -12,16 +12,16 @@ namespace {
 
 using testing::message_of;
 
-constexpr std::array kOrderings = {Ordering::kDefault, Ordering::kNatural, Ordering::kAmd,
-                                   Ordering::kColamd,  Ordering::kMetis,   Ordering::kNested};
+constexpr std::array kEveryOrdering = {Ordering::kDefault, Ordering::kNatural, Ordering::kAmd,
+                                       Ordering::kColamd,  Ordering::kMetis,   Ordering::kNested};
 
 TEST(SolverOptions, OrderingsAreFoundByTheirNames) {
   std::set<std::string_view> names;
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kEveryOrdering) {
     EXPECT_EQ(find_ordering(name_of(ordering)), ordering);
     names.insert(name_of(ordering));
   }
-  EXPECT_EQ(names.size(), kOrderings.size());
+  EXPECT_EQ(names.size(), kEveryOrdering.size());
   EXPECT_EQ(name_of(Ordering::kNested), "nested");
 }
 

@@ -17,7 +17,7 @@ using testing::message_of;
 using testing::random_dense;
 using testing::random_of;
 
-const std::vector<std::vector<int>> kBlocks = {
+const std::vector<std::vector<int>> kLayouts = {
     {1}, {3}, {1, 1, 1, 1, 1, 1, 1}, {4, 4, 4, 4, 4, 4}, {4, 1, 7, 4, 4, 12, 3, 4}, {30, 2, 24}};
 
 /// A solver of the catalogue with a structure that it claims: what a test goes through.
@@ -63,7 +63,7 @@ class Contract : public ::testing::TestWithParam<Case> {
   /// Calls test(blocks, solver) for all blocks, orderings and widths of index.
   template <typename Test>
   static void for_each_solver(const Test& test) {
-    for (const std::vector<int>& blocks : kBlocks) {
+    for (const std::vector<int>& blocks : kLayouts) {
       for (const Ordering ordering : entry().orderings) {
         for (const IndexWidth width : {IndexWidth::k32, IndexWidth::k64}) {
           if (width == IndexWidth::k64 && !entry().has_64_bit_indices) continue;

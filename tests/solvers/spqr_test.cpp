@@ -17,11 +17,11 @@ using testing::options_of;
 using testing::random_block_lower;
 using testing::random_sparse;
 
-constexpr auto kOrderings = {Ordering::kDefault, Ordering::kNatural, Ordering::kAmd,
-                             Ordering::kColamd, Ordering::kMetis};
+constexpr auto kOrderingsOfSpqr = {Ordering::kDefault, Ordering::kNatural, Ordering::kAmd,
+                                   Ordering::kColamd, Ordering::kMetis};
 
 TEST(Spqr, AgreesWithDenseLuInEveryOrdering) {
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kOrderingsOfSpqr) {
     for (const IndexWidth width : {IndexWidth::k32, IndexWidth::k64}) {
       SCOPED_TRACE(name_of(ordering));
       for (const SparseMatrix& A :
@@ -41,7 +41,7 @@ TEST(Spqr, ServesNewValuesAndNewPatterns) {
   B.diagonal() *= -1.5;
   SparseMatrix zero = A;
   zero.coeffs().setZero();
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kOrderingsOfSpqr) {
     const auto solver = make_spqr(options_of(ordering));
     testing::expect_serves_again(*solver, A, B, zero, random_sparse(90, 2, 1));
   }
@@ -100,7 +100,7 @@ TEST(Spqr, NamesTheColumnOfASingularMatrix) {
   // Columns 11 and 12 are alike: whichever comes last depends on the other.
   const SparseMatrix A =
       nearly_identity(30, {{11, 12, 0.5}, {12, 11, 1.0}, {11, 11, 0.5}, {12, 12, 1.0}});
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kOrderingsOfSpqr) {
     const auto solver = make_spqr(options_of(ordering));
     solver->name_unknowns([](int index) { return concat("joint ", index); });
     solver->analyze(A);
@@ -125,7 +125,7 @@ TEST(Spqr, RefusesADependenceThatRoundingHides) {
   dense.col(7) = dense.rowwise().sum();
   for (int j = 0; j < 12; ++j) dense.col(j) *= std::pow(2.0, 5 * (j % 5 - 2));
   const SparseMatrix A = dense.sparseView();
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kOrderingsOfSpqr) {
     EXPECT_THROW((void)factorized(make_spqr, options_of(ordering), A), NumericalFailure);
   }
 }
@@ -136,7 +136,7 @@ TEST(Spqr, RefusesAStructurallySingularMatrix) {
   dense.row(0).setOnes();
   dense.col(0).setOnes();
   const SparseMatrix A = dense.sparseView();
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kOrderingsOfSpqr) {
     EXPECT_THROW((void)factorized(make_spqr, options_of(ordering), A), NumericalFailure);
   }
 }

@@ -8,16 +8,16 @@
 namespace hbar::solvers {
 namespace {
 
+using testing::kWidths;
 using testing::message_of;
 using testing::options_of;
 using testing::random_sparse;
 
-constexpr auto kOrderings = {Ordering::kDefault, Ordering::kNatural, Ordering::kAmd,
-                             Ordering::kColamd, Ordering::kMetis};
-constexpr auto kWidths = {IndexWidth::k32, IndexWidth::k64};
+constexpr auto kOrderingsOfUmfpack = {Ordering::kDefault, Ordering::kNatural, Ordering::kAmd,
+                                      Ordering::kColamd, Ordering::kMetis};
 
 TEST(Umfpack, AgreesWithDenseLuInEveryOrderingAndWidth) {
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kOrderingsOfUmfpack) {
     for (const IndexWidth width : kWidths) {
       SCOPED_TRACE(name_of(ordering));
       for (const SparseMatrix& A :
@@ -36,7 +36,7 @@ TEST(Umfpack, ServesNewValuesAndNewPatterns) {
   B.diagonal() *= -1.5;
   SparseMatrix zero = A;
   zero.coeffs().setZero();
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kOrderingsOfUmfpack) {
     for (const IndexWidth width : kWidths) {
       const auto solver = make_umfpack(options_of(ordering, width));
       testing::expect_serves_again(*solver, A, B, zero, random_sparse(90, 2, 1));
@@ -45,7 +45,7 @@ TEST(Umfpack, ServesNewValuesAndNewPatterns) {
 }
 
 TEST(Umfpack, HeedsTheOrdering) {
-  const std::vector<Ordering> orderings(kOrderings.begin() + 1, kOrderings.end());
+  const std::vector<Ordering> orderings(kOrderingsOfUmfpack.begin() + 1, kOrderingsOfUmfpack.end());
   testing::expect_heeds_ordering(make_umfpack, random_sparse(400, 3, 1), orderings,
                                  Ordering::kColamd);
   EXPECT_EQ(message_of<InvalidInput>([] { (void)make_umfpack(options_of(Ordering::kNested)); }),
@@ -67,7 +67,7 @@ TEST(Umfpack, FillsLessByMinimumDegree) {
 
 TEST(Umfpack, NamesTheRowAndColumnOfASingularMatrixWithBothWidths) {
   const SparseMatrix A = testing::nearly_identity(20, {{11, 12, 1.0}, {12, 11, 1.0}});
-  for (const Ordering ordering : kOrderings) {
+  for (const Ordering ordering : kOrderingsOfUmfpack) {
     for (const IndexWidth width : kWidths) {
       const auto solver = make_umfpack(options_of(ordering, width));
       solver->name_unknowns([](int index) { return concat("joint ", index); });

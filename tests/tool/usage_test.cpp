@@ -29,14 +29,14 @@ TEST_F(Usage, HelpAndVersionGoToStandardOutput) {
   }
 }
 
-struct Refusal {
+struct RefusedLine {
   std::vector<std::string> arguments;
   std::string message;
 };
 
 TEST_F(Usage, EveryMistakeIsNamed) {
   const std::string file = scene("pendulum");
-  const std::vector<Refusal> refusals = {
+  const std::vector<RefusedLine> refusals = {
       {{},
        "a command is needed: info, simulate, gradient, check, solvers, corpus (see: hbar --help)"},
       {{"simulat", file},
@@ -69,7 +69,7 @@ TEST_F(Usage, EveryMistakeIsNamed) {
       {{"simulate", file, "--out", "-", "--csv", "-"},
        "--out and --csv cannot both go to standard output"},
   };
-  for (const Refusal& refusal : refusals) {
+  for (const RefusedLine& refusal : refusals) {
     SCOPED_TRACE(refusal.message);
     const Outcome outcome = hbar(refusal.arguments);
     EXPECT_EQ(outcome.code, 2);
