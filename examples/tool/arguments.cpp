@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "entries.h"
+#include "gradient_solver.h"
 #include "hbar/core/nearest_name.h"
 #include "hbar/scene/numbers.h"
 #include "labels.h"
@@ -56,7 +57,7 @@ struct OptionRow {
   const char* sentence;
 };
 
-constexpr std::array<OptionRow, 26> kOptions = {{
+constexpr std::array<OptionRow, 27> kOptions = {{
     {"--steps", "N", kInRuns, "Number of time steps (100)."},
     {"--dt", "H", kInRuns, "Time step in seconds (the scene's)."},
     {"--integrator", "NAME", kInRuns, "bdf1, bdf2 or sdirk2 (the scene's)."},
@@ -70,6 +71,8 @@ constexpr std::array<OptionRow, 26> kOptions = {{
      "last q; tactile: half the sum of squared sensor readings of all steps (variables where there "
      "are any, else final-position)."},
     {"--newton-tol", "X", kInRuns, "Newton's bound on the residual's norm (the scene's)."},
+    {"--linear-solver", "NAME", kInGradient,
+     "What solves the gradient's linear system: sweep, auto or a solver's name (the scene's)."},
     {"--out", "FILE", kInRuns, "Writes the results as JSON; - is standard output."},
     {"--csv", "FILE", kInSimulate | kInGradient,
      "Writes q, qdot, variables and sensor readings of every step as CSV; - is standard output."},
@@ -140,6 +143,10 @@ Arguments read(Command command, std::string scene, const Given& given) {
   out.load.h = positive_number(given, "--dt");
   out.load.integrator = integrator(given);
   out.load.newton_tol = positive_number(given, "--newton-tol");
+  out.load.linear_solver = value_of(given, "--linear-solver");
+  if (out.load.linear_solver) {
+    check_name("--linear-solver", *out.load.linear_solver, linear_solver_names());
+  }
   out.load.objective = objective(given);
   read_parameters(given, out.load);
   out.q0 = numbers(given, "--q0");

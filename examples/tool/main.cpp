@@ -6,6 +6,7 @@
 #include <new>
 
 #include "arguments.h"
+#include "gradient_solver.h"
 #include "inputs.h"
 #include "outputs.h"
 #include "process.h"
@@ -37,7 +38,8 @@ std::string status_word(RolloutStatus status) {
 }
 
 /// Simulates, and differentiates if asked and nothing came between.
-Results run(Problem& problem, bool with_gradient) {
+Results run(LoadedProblem& loaded, bool with_gradient) {
+  Problem& problem = loaded.problem;
   const Rollout rollout = problem.simulator.rollout(problem.inputs);
   const Trajectory& trajectory = rollout.partial();
   Results out;
@@ -64,7 +66,7 @@ Results run(Problem& problem, bool with_gradient) {
     return out;
   }
   try {
-    out.gradient = gradient(problem.simulator, trajectory, problem.objective);
+    out.gradient = gradient_of(loaded, trajectory);
   } catch (const NumericalFailure& error) {
     out.status = "gradient_failed";
     out.message = error.what();
@@ -73,7 +75,7 @@ Results run(Problem& problem, bool with_gradient) {
 }
 
 ExitCode simulate(const Arguments& arguments, LoadedProblem& loaded) {
-  const Results results = run(loaded.problem, arguments.command == Command::kGradient);
+  const Results results = run(loaded, arguments.command == Command::kGradient);
   if (arguments.out) {
     write_output(*arguments.out, results_json(loaded, results));
   }

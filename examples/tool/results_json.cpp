@@ -127,7 +127,8 @@ Json header(const LoadedProblem& loaded) {
           {"integrator", simulator.options().integrator},
           {"h", simulator.options().h},
           {"steps", simulator.options().steps},
-          {"newton_tol", simulator.options().newton.tol}};
+          {"newton_tol", simulator.options().newton.tol},
+          {"linear_solver", loaded.linear_solver}};
 }
 
 /// By contact, what it did after each step.

@@ -82,6 +82,7 @@ TEST_F(ToolResults, JsonHoldsWhatTheLibraryComputes) {
   EXPECT_EQ(r.at("model"), "arm");
   EXPECT_EQ(r.at("integrator"), "sdirk2");
   EXPECT_EQ(r.at("newton_tol"), 1e-12);
+  EXPECT_EQ(r.at("linear_solver"), "sweep");
   EXPECT_EQ(r.at("coordinates"), json({"yaw", "shoulder", "elbow"}));
   EXPECT_EQ(r.at("variable_names"), json({"hand.x", "hand.y", "hand.z"}));
   EXPECT_EQ(vector_of(r.at("q").at(0)), problem.inputs.q0);
@@ -103,6 +104,38 @@ TEST_F(ToolResults, JsonHoldsWhatTheLibraryComputes) {
     EXPECT_EQ(p.at("value"), parameters[i].nominal);
     EXPECT_NEAR(p.at("derivative"), expected.p[i], 1e-12 * expected.p.norm());
   }
+}
+
+TEST_F(ToolResults, LinearSolversAgreeWhetherOptionOrSceneNamesThem) {
+  const auto derivatives = [this](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"gradient", file,    "--steps",      "20",   "--params",
+                                          "all",      "--out", path("r.json"), "--q0", "0.4 -0.2"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = hbar(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return json::parse(read_file(path("r.json")));
+  };
+  const auto vector_of_p = [](const json& r) {
+    Eigen::VectorXd p(static_cast<Eigen::Index>(r.at("gradient").at("p").size()));
+    for (Eigen::Index i = 0; i < p.size(); ++i) {
+      p[i] = r.at("gradient").at("p").at(static_cast<std::size_t>(i)).at("derivative");
+    }
+    return p;
+  };
+  const std::string file = scene("double_pendulum");
+  const Eigen::VectorXd swept = vector_of_p(derivatives(file, {}));
+  for (const char* name : {"auto", "klu", "block_substitution"}) {
+    const json r = derivatives(file, {"--linear-solver", name});
+    EXPECT_EQ(r.at("linear_solver"), name);
+    EXPECT_LT(relative_gap(vector_of_p(r), swept), 1e-10) << name;
+  }
+  std::string text = read_file(file);
+  const std::size_t place = text.find("<option");
+  ASSERT_NE(place, std::string::npos);
+  text.insert(place, "<solver_option linear_solver=\"klu\"/>");
+  const json r = derivatives(write("klu.xml", text), {});
+  EXPECT_EQ(r.at("linear_solver"), "klu");
+  EXPECT_LT(relative_gap(vector_of_p(r), swept), 1e-10);
 }
 
 TEST_F(ToolResults, ParametersAreChosenByMaskOrByName) {

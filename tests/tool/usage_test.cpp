@@ -23,8 +23,9 @@ TEST_F(Usage, HelpAndVersionGoToStandardOutput) {
     EXPECT_EQ(own.err, "");
   }
   const std::string options = hbar({"gradient", "--help"}).out;
-  for (const char* option : {"--steps", "--dt", "--integrator", "--q0", "--qdot0", "--controls",
-                             "--params", "--objective", "--newton-tol", "--out", "--csv"}) {
+  for (const char* option :
+       {"--steps", "--dt", "--integrator", "--q0", "--qdot0", "--controls", "--params",
+        "--objective", "--newton-tol", "--linear-solver", "--out", "--csv"}) {
     EXPECT_NE(options.find(option), std::string::npos) << option;
   }
 }
@@ -51,6 +52,8 @@ TEST_F(Usage, EveryMistakeIsNamed) {
       {{"simulate", file, "--dt", "1.5x"}, "--dt: \"1.5x\" is not a finite number"},
       {{"simulate", file, "--dt", "nan"}, "--dt: \"nan\" is not a finite number"},
       {{"simulate", file, "--dt", "-0.1"}, "--dt: -0.1 is not positive"},
+      {{"gradient", file, "--linear-solver", "kul"},
+       "--linear-solver: there is no \"kul\"; did you mean \"klu\"?"},
       {{"simulate", file, "--newton-tol", "0"}, "--newton-tol: 0 is not positive"},
       {{"simulate", file, "--q0", "1 x"}, "--q0: entry 2: \"x\" is not a finite number"},
       {{"simulate", file, "--q0", "1,,2"}, "--q0: entry 2 is missing between commas"},

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "hbar/adjoint/load_problem.h"
+
+namespace hbar::tool {
+
+/// Names that --linear-solver takes: sweep, auto and what this build has for the gradient's system.
+[[nodiscard]] std::vector<std::string> linear_solver_names();
+
+/// The gradient of a problem along its trajectory by its linear solver.
+///
+/// @throws InvalidInput if the scene names a solver that this build has not
+/// @throws NumericalFailure if the system cannot be solved
+[[nodiscard]] Gradient gradient_of(LoadedProblem& loaded, const Trajectory& trajectory);
+
+}  // namespace hbar::tool
