@@ -37,8 +37,8 @@ constexpr std::array<Row, 12> kRows = {{
     {"arm", {}, {20, 100, 500}},
     {"finger", {}, {10, 50, 200}, false},
     {"tumbling_box", {}, {8, 40, 150}, false},
-    {"rotate_box", {}, {5, 20, 60}},
-    {"flip_box", {}, {5, 20, 60}},
+    {"rotate_box", {}, {10, 20, 60}},
+    {"flip_box", {}, {10, 20, 60}},
     {"assemble", {}, {5, 20, 60}, false},
 }};
 

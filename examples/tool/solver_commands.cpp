@@ -208,7 +208,6 @@ ExitCode run_corpus(const CorpusArguments& arguments) {
   if (!benchmark::has_matrix_market()) {
     usage("corpus: this build has no CHOLMOD, which writes Matrix Market files");
   }
-  make_output_folder(arguments.folder);
   std::vector<Case> cases;
   for (const CorpusSize size : {CorpusSize::kSmall, CorpusSize::kMedium, CorpusSize::kLarge}) {
     if (std::find(arguments.sizes.begin(), arguments.sizes.end(), name_of(size)) !=
@@ -217,6 +216,12 @@ ExitCode run_corpus(const CorpusArguments& arguments) {
       cases.insert(cases.end(), own.begin(), own.end());
     }
   }
+  for (const Case& which : cases) {
+    if (!which.scene.empty()) {
+      static_cast<void>(scene::read_text_file(which.scene));  // what is missing is said at once
+    }
+  }
+  make_output_folder(arguments.folder);
   example::ProgressBar bar;
   benchmark::CaseAssembler assembler(&stop_flag());
   for (std::size_t i = 0; i < cases.size(); ++i) {
