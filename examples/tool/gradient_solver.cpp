@@ -1,7 +1,6 @@
 #include "gradient_solver.h"
 
 #include "hbar/adjoint/assembled_adjoint.h"
-#include "hbar/adjoint/gradient.h"
 #ifdef HBAR_HAVE_SUITE
 #include "hbar/solvers/solver_suite.h"
 #endif

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hbar/adjoint/gradient.h"
 #include "hbar/adjoint/load_problem.h"
 
 namespace hbar::tool {
