@@ -156,14 +156,14 @@ TEST_F(SolversCommand, AnInterruptKeepsWhatWasMeasured) {
   EXPECT_EQ(result("r.json").at("interrupted"), true);
 }
 
-struct Refusal {
+struct Mistake {
   std::vector<std::string> arguments;
   std::string message;
   int code = 2;
 };
 
 TEST_F(SolversCommand, EveryMistakeIsNamed) {
-  const std::vector<Refusal> refusals = {
+  const std::vector<Mistake> mistakes = {
       {{"--family", "chian"}, "--family: there is no \"chian\"; did you mean 'chain'?"},
       {{"--family", " "}, "--family: it is empty"},
       {{"--family", "hand", "--dof", "2"}, "--dof: family hand needs at least 3 joints, not 2"},
@@ -191,16 +191,16 @@ TEST_F(SolversCommand, EveryMistakeIsNamed) {
        "/proc/plots: the folder cannot be made: No such file or directory",
        6},
   };
-  for (Refusal refusal : refusals) {
-    SCOPED_TRACE(refusal.message);
-    refusal.arguments.insert(refusal.arguments.begin(), "solvers");
-    const Outcome outcome = hbar(refusal.arguments);
-    if (refusal.arguments[1] == "--plots" && outcome.err.find("gnuplot-nox") != std::string::npos) {
+  for (Mistake mistake : mistakes) {
+    SCOPED_TRACE(mistake.message);
+    mistake.arguments.insert(mistake.arguments.begin(), "solvers");
+    const Outcome outcome = hbar(mistake.arguments);
+    if (mistake.arguments[1] == "--plots" && outcome.err.find("gnuplot-nox") != std::string::npos) {
       continue;  // which is said before
     }
-    EXPECT_EQ(outcome.code, refusal.code);
+    EXPECT_EQ(outcome.code, mistake.code);
     EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(outcome.err, "hbar: " + refusal.message + "\n");
+    EXPECT_EQ(outcome.err, "hbar: " + mistake.message + "\n");
   }
 }
 
