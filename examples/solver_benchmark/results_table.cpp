@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t kShownMatrices = 24;
 
 std::string milliseconds(double seconds) {
-  return seconds < 1.0 ? fmt::format("{:.3f}", 1e3 * seconds)
-                       : fmt::format("{:.0f}", 1e3 * seconds);
+  const int digits = seconds < 0.1 ? 3 : seconds < 1.0 ? 1 : 0;
+  return fmt::format("{:.{}f}", 1e3 * seconds, digits);
 }
 
 std::string name_with_choice(const Measurement& m) {
