@@ -128,13 +128,16 @@ Shape shape_of(const SolverOptions& options, const SparseMatrix& A) {
   Shape shape;
   shape.is_block_triangular =
       !begin_of_row.empty() && static_cast<Eigen::Index>(begin_of_row.size()) == A.rows();
-  Eigen::Index width = 0;
-  for (Eigen::Index j = 0; j < A.cols(); ++j) {
-    for (SparseMatrix::InnerIterator entry(A, j); entry; ++entry) {
-      width = std::max(width, std::abs(entry.row() - j));
-      if (shape.is_block_triangular && entry.row() < begin_of_row[static_cast<std::size_t>(j)]) {
-        shape.is_block_triangular = false;
-      }
+  // Rows ascend within a column: its first and its last entry tell.
+  int width = 0;
+  for (int j = 0; j < A.cols(); ++j) {
+    const int begin = A.outerIndexPtr()[j];
+    const int end = A.outerIndexPtr()[j + 1];
+    if (begin == end) continue;
+    const int first = A.innerIndexPtr()[begin];
+    width = std::max({width, j - first, A.innerIndexPtr()[end - 1] - j});
+    if (shape.is_block_triangular && first < begin_of_row[static_cast<std::size_t>(j)]) {
+      shape.is_block_triangular = false;
     }
   }
   const double rows = static_cast<double>(std::max<Eigen::Index>(A.rows(), 1));
