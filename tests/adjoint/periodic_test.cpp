@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "hbar/adjoint/tangent.h"
 #include "hbar/core/error.h"
 #include "tests/adjoint/input_vector.h"
 #include "tests/adjoint/periodic_problems.h"
@@ -128,6 +129,49 @@ TEST_P(PeriodicOfEveryIntegrator, HasTheExactGradientByEveryClass) {
     EXPECT_NEAR(slope, quotient, 1e-6 * std::max(1e-3, std::abs(quotient))) << entries.name;
   }
   EXPECT_GE(classes, 9);
+}
+
+/// dΨ along a direction of p and u by another route: tangents of one simulated period, and the
+/// initial state that follows from its monodromy matrix, w = Φ w + s.
+double derivative_by_monodromy(Problem& problem, const Trajectory& orbit, const Eigen::VectorXd& dp,
+                               const Eigen::VectorXd& du) {
+  Simulator& simulator = problem.simulator;
+  const int n = simulator.model().dof();
+  Directions d = Directions::zero(simulator, 2 * n + 1);
+  d.q0.leftCols(n).setIdentity();
+  d.qdot0.middleCols(n, n).setIdentity();
+  d.p.col(2 * n) = dp;
+  d.u.col(2 * n) = du;
+  TangentSweep sweep(simulator);
+  const Tangents tangents = sweep.push_forward(orbit, d);
+  Eigen::MatrixXd end(2 * n, 2 * n + 1);
+  end << tangents.q.bottomRows(n), tangents.qdot.bottomRows(n);
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(2 * n, 2 * n);
+  const Eigen::VectorXd w = (I - end.leftCols(2 * n)).partialPivLu().solve(end.col(2 * n));
+  const TrajectoryPartials partials = problem.objective.partials(simulator.values(orbit));
+  double out = directional_derivative(partials, tangents, d, 2 * n);
+  for (int i = 0; i < 2 * n; ++i) {
+    out += w[i] * directional_derivative(partials, tangents, d, i);
+  }
+  return out;
+}
+
+TEST_P(PeriodicOfEveryIntegrator, HasTheTangentsDerivativeThroughTheMonodromyMatrix) {
+  for (const bool contact : {false, true}) {
+    Problem problem = driven_pendulum(GetParam(), 20, contact);
+    PeriodicSolver solver(problem.simulator);
+    const Trajectory orbit = solver.solve(problem.inputs).trajectory;
+    const Gradient gradient = solver.gradient(orbit, problem.objective);
+    Random random(11);
+    for (int i = 0; i < 5; ++i) {
+      const Eigen::VectorXd dp = random.vector(gradient.p.size());
+      const Eigen::VectorXd du = random.vector(gradient.u.size());
+      const double expected = derivative_by_monodromy(problem, orbit, dp, du);
+      const double scale = gradient.p.norm() * dp.norm() + gradient.u.norm() * du.norm();
+      EXPECT_NEAR(gradient.p.dot(dp) + gradient.u.reshaped().dot(du), expected, 1e-12 * scale)
+          << contact;
+    }
+  }
 }
 
 TEST_P(PeriodicOfEveryIntegrator, HasTaylorRemaindersOfSecondOrder) {
