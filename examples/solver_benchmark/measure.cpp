@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 
 #include "hbar/core/error.h"
@@ -16,12 +17,21 @@ namespace {
 using solvers::LinearSolver;
 using solvers::System;
 
+double now(Clock clock) {
+  if (clock == Clock::kCpu) {
+    std::timespec time = {};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 /// Seconds that a call takes.
 template <typename Work>
-double seconds(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
+double seconds(Clock clock, const Work& work) {
+  const double start = now(clock);
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return now(clock) - start;
 }
 
 /// The fastest of several calls.
@@ -41,7 +51,7 @@ template <typename Work>
 double fastest(const MeasureOptions& options, const Work& work) {
   double best = std::numeric_limits<double>::infinity();
   repeat(options, [&] {
-    const double time = seconds(work);
+    const double time = seconds(options.clock, work);
     best = std::min(best, time);
     return time;
   });
@@ -68,14 +78,14 @@ std::unique_ptr<LinearSolver> prepare(const BenchmarkMatrix& matrix, const std::
   out.factorise = std::numeric_limits<double>::infinity();
   repeat(options, [&] {
     solver.reset();
-    const double analyse = seconds([&] {
+    const double analyse = seconds(options.clock, [&] {
       solver = solvers::make_solver(name, solver_options, matrix.A);
       solver->analyze(matrix.A);
     });
     if (matrix.name_of_unknown) {
       solver->name_unknowns(matrix.name_of_unknown);
     }
-    const double factorise = seconds([&] { solver->factorize(matrix.A); });
+    const double factorise = seconds(options.clock, [&] { solver->factorize(matrix.A); });
     out.analyse = std::min(out.analyse, analyse);
     out.factorise = std::min(out.factorise, factorise);
     return analyse + factorise;

@@ -8,8 +8,15 @@
 
 namespace hbar::solver_benchmark {
 
+/// What time is measured.
+enum class Clock {
+  kWall,  ///< what passes
+  kCpu    ///< what the process computes, all threads together: steadier on a machine that is shared
+};
+
 /// How to measure.
 struct MeasureOptions {
+  Clock clock = Clock::kWall;
   int repeat = 3;            ///< at least so often, of which the fastest counts; ≥ 1
   double least_time = 2e-4;  ///< s; what is shorter is repeated until so much has passed
   int rhs = 16;              ///< right-hand sides solved at once, ≥ 1
@@ -22,7 +29,7 @@ struct Reference {
   std::string failure;              ///< why there is no x; else empty
 };
 
-/// One solver on one matrix. Times are wall time, in seconds.
+/// One solver on one matrix. Times are in seconds of MeasureOptions::clock.
 struct Measurement {
   std::string solver;                ///< as asked for: "auto", "klu", …
   std::string ordering;              ///< as asked for

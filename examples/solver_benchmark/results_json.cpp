@@ -74,9 +74,13 @@ Json scaling_json(const BenchmarkResults& results) {
 }  // namespace
 
 std::string results_json(const BenchmarkResults& results) {
-  Json out = {{"hbar", HBAR_VERSION},       {"repeat", results.options.repeat},
-              {"rhs", results.options.rhs}, {"interrupted", results.interrupted},
-              {"matrices", Json::array()},  {"profiles", Json::array()}};
+  Json out = {{"hbar", HBAR_VERSION},
+              {"clock", results.options.clock == Clock::kCpu ? "cpu" : "wall"},
+              {"repeat", results.options.repeat},
+              {"rhs", results.options.rhs},
+              {"interrupted", results.interrupted},
+              {"matrices", Json::array()},
+              {"profiles", Json::array()}};
   for (const MatrixResults& matrix : results.matrices) {
     out["matrices"].push_back(matrix_json(matrix));
   }

@@ -57,7 +57,7 @@ struct OptionRow {
   const char* sentence;
 };
 
-constexpr std::array<OptionRow, 27> kOptions = {{
+constexpr std::array<OptionRow, 28> kOptions = {{
     {"--steps", "N", kInRuns, "Number of time steps (100)."},
     {"--dt", "H", kInRuns, "Time step in seconds (the scene's)."},
     {"--integrator", "NAME", kInRuns, "bdf1, bdf2 or sdirk2 (the scene's)."},
@@ -87,6 +87,7 @@ constexpr std::array<OptionRow, 27> kOptions = {{
     {"--ordering", "LIST", kInSolvers,
      "default, natural, amd, colamd, metis, nested; solvers that do not offer one are left out "
      "(default)."},
+    {"--clock", "NAME", kInSolvers, "wall, or cpu: steadier on a machine that is shared (wall)."},
     {"--rhs", "N", kInSolvers, "Right-hand sides that are solved at once (16)."},
     {"--repeat", "N", kInSolvers, "The fastest of so many runs counts (3)."},
     {"--matrices", "DIR", kInSolvers, "Measures on the Matrix Market files in a folder, too."},

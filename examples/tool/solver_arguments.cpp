@@ -52,6 +52,8 @@ SolverArguments read_solver_arguments(const std::vector<std::string>& scenes, co
     out.solvers.clear();
   }
   out.orderings = words(given, "--ordering").value_or(std::vector<std::string>{"default"});
+  out.clock = value_of(given, "--clock").value_or(out.clock);
+  check_name("--clock", out.clock, {"wall", "cpu"});
   out.rhs = count(given, "--rhs").value_or(out.rhs);
   out.repeat = count(given, "--repeat").value_or(out.repeat);
   out.json = file(given, "--json");

@@ -19,6 +19,7 @@ struct SolverArguments {
   std::vector<std::string> systems;
   std::vector<std::string> solvers;  ///< empty: all
   std::vector<std::string> orderings;
+  std::string clock = "wall";  ///< or "cpu"
   int rhs = 16;
   int repeat = 3;
   std::optional<std::string> matrices;  ///< folder of Matrix Market files

@@ -111,6 +111,7 @@ BenchmarkPlan plan_of(const SolverArguments& arguments) {
   } catch (const InvalidInput& error) {
     usage(fmt::format("--ordering: {}", error.what()));
   }
+  plan.options.clock = arguments.clock == "cpu" ? benchmark::Clock::kCpu : benchmark::Clock::kWall;
   plan.options.rhs = arguments.rhs;
   plan.options.repeat = arguments.repeat;
   plan.stop = &stop_flag();

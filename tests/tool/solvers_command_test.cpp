@@ -31,7 +31,9 @@ class SolversCommand : public ToolTest {
 double bound(const std::string& solver) { return solver == "cholmod_normal" ? 1e-12 : 1e-14; }
 
 TEST_F(SolversCommand, EverySolverSolvesTheSystemsItIsMeantFor) {
-  const json results = measured({"--family", "chain,hand", "--dof", "3", "--steps", "12"});
+  const json results =
+      measured({"--family", "chain,hand", "--dof", "3", "--steps", "12", "--clock", "cpu"});
+  EXPECT_EQ(results.at("clock"), "cpu");
   ASSERT_EQ(results.at("matrices").size(), 8U);
   std::set<std::string> seen;
   for (const json& matrix : results.at("matrices")) {
@@ -176,6 +178,7 @@ TEST_F(SolversCommand, EveryMistakeIsNamed) {
       {{"--ordering", "amdd"}, "--ordering: there is no \"amdd\"; did you mean 'amd'?"},
       {{"--solver", "auto", "--ordering", "metis"},
        "--ordering: none of these solvers offers any of these orderings; take default"},
+      {{"--clock", "cup"}, "--clock: there is no \"cup\"; did you mean 'cpu'?"},
       {{"--rhs", "0"}, "--rhs: 0 is not at least 1"},
       {{"--repeat", "many"}, "--repeat: \"many\" is not a whole number"},
       {{"--json", "-", "--csv", "-"}, "--json and --csv cannot both go to standard output"},

@@ -53,7 +53,7 @@ TEST_F(Usage, EveryMistakeIsNamed) {
       {{"simulate", file, "--dt", "nan"}, "--dt: \"nan\" is not a finite number"},
       {{"simulate", file, "--dt", "-0.1"}, "--dt: -0.1 is not positive"},
       {{"gradient", file, "--linear-solver", "kul"},
-       "--linear-solver: there is no \"kul\"; did you mean \"klu\"?"},
+       "--linear-solver: there is no \"kul\"; did you mean 'klu'?"},
       {{"simulate", file, "--newton-tol", "0"}, "--newton-tol: 0 is not positive"},
       {{"simulate", file, "--q0", "1 x"}, "--q0: entry 2: \"x\" is not a finite number"},
       {{"simulate", file, "--q0", "1,,2"}, "--q0: entry 2 is missing between commas"},
