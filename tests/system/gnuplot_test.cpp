@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Gnuplot : public testing::Test {
+class Gnuplot : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string name = (fs::temp_directory_path() / "hbar_plots.XXXXXX").string();

@@ -1,12 +1,9 @@
-// What the benchmark of solvers is made of: families, corpus, Matrix Market files, elimination,
-// performance profiles, fits.
+// What the benchmark of solvers is made of: families, corpus, elimination, performance profiles,
+// fits.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <random>
 #include <set>
@@ -15,7 +12,6 @@
 #include "examples/solver_benchmark/corpus.h"
 #include "examples/solver_benchmark/elimination.h"
 #include "examples/solver_benchmark/families.h"
-#include "examples/solver_benchmark/matrix_market.h"
 #include "examples/solver_benchmark/measure.h"
 #include "examples/solver_benchmark/performance_profile.h"
 #include "examples/solver_benchmark/scaling.h"
@@ -24,7 +20,6 @@
 namespace hbar::solver_benchmark {
 namespace {
 
-namespace fs = std::filesystem;
 using solvers::SparseMatrix;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -179,153 +174,6 @@ TEST(Elimination, FillsInWhatDenseEliminationDoes) {
     }
   }
   EXPECT_LT(minimum, given);
-}
-
-class MatrixMarket : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!has_matrix_market()) {
-      GTEST_SKIP() << "this build has no CHOLMOD";
-    }
-    std::string name = (fs::temp_directory_path() / "hbar_market.XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  [[nodiscard]] fs::path write(const std::string& text) const {
-    std::ofstream(folder_ / "m.mtx") << text;
-    return folder_ / "m.mtx";
-  }
-
-  /// The message that reading a text as a matrix is refused with, without the file's name.
-  [[nodiscard]] std::string refusal(const std::string& text) const {
-    const fs::path file = write(text);
-    try {
-      static_cast<void>(read_matrix(file));
-    } catch (const InvalidInput& error) {
-      const std::string message = error.what();
-      EXPECT_TRUE(message.starts_with(file.string() + ": ")) << message;
-      EXPECT_NE(message.find("; allowed: a square matrix"), std::string::npos) << message;
-      return message.substr(file.string().size() + 2,
-                            message.find("; allowed") - file.string().size() - 2);
-    }
-    return "read";
-  }
-
-  fs::path folder_;
-};
-
-bool same_bits(const SparseMatrix& A, const SparseMatrix& B) {
-  return A.rows() == B.rows() && A.nonZeros() == B.nonZeros() &&
-         std::equal(A.outerIndexPtr(), A.outerIndexPtr() + A.cols() + 1, B.outerIndexPtr()) &&
-         std::equal(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros(), B.innerIndexPtr()) &&
-         std::memcmp(A.valuePtr(), B.valuePtr(),
-                     sizeof(double) * static_cast<std::size_t>(A.nonZeros())) == 0;
-}
-
-TEST_F(MatrixMarket, AMatrixOfEverySystemComesBackToTheBit) {
-  CaseAssembler assembler;
-  for (const SystemKind kind :
-       {SystemKind::kAdjoint, SystemKind::kPeriodic, SystemKind::kGaussNewton, SystemKind::kKkt}) {
-    SCOPED_TRACE(name_of(kind));
-    const BenchmarkMatrix matrix =
-        assembler.assemble({.family = "hand", .joints = 4, .steps = 5, .system = kind});
-    write_corpus_matrix(matrix, folder_);
-    const BenchmarkMatrix back = read_benchmark_matrix(folder_ / (matrix.label.name + ".mtx"));
-    EXPECT_TRUE(same_bits(back.A, matrix.A));
-    EXPECT_EQ(back.b, matrix.b);
-    EXPECT_EQ(back.options.structure, matrix.options.structure);
-    EXPECT_EQ(back.options.block_sizes, matrix.options.block_sizes);
-    EXPECT_EQ(back.label.system, matrix.label.system);
-    EXPECT_EQ(back.label.dof, 10);
-    const Reference reference = find_reference(matrix);
-    ASSERT_TRUE(back.x.has_value());
-    EXPECT_EQ(*back.x, reference.x);
-    EXPECT_EQ(back.condition, reference.condition);
-  }
-  EXPECT_EQ(find_matrix_files(folder_).size(), 4U);
-}
-
-TEST_F(MatrixMarket, SymmetricPatternAndIntegerFilesAreFilledIn) {
-  Eigen::Matrix3d expected;
-  expected << 2, -1, 0, -1, 2, 5, 0, 5, 0;
-  EXPECT_EQ(Eigen::MatrixXd(read_matrix(write("%%MatrixMarket matrix coordinate real symmetric\n"
-                                              "% a comment\n"
-                                              "3 3 4\n1 1 2\n2 1 -1\n2 2 2e0\n3 2 5\n"))),
-            expected);
-  expected << 0, -7, 0, 7, 0, 0, 0, 0, 0;
-  EXPECT_EQ(Eigen::MatrixXd(read_matrix(
-                write("%%MatrixMarket matrix coordinate integer skew-symmetric\n3 3 1\n2 1 7\n"))),
-            expected);
-  expected << 1, 1, 0, 0, 1, 0, 0, 0, 1;
-  EXPECT_EQ(Eigen::MatrixXd(read_matrix(write("%%MatrixMarket matrix coordinate pattern general\n"
-                                              "3 3 4\n1 1\n2 2\n3 3\n1 2\n"))),
-            expected);
-  const Eigen::MatrixXd pattern(
-      read_matrix(write("%%MatrixMarket matrix coordinate pattern symmetric\n"
-                        "3 3 5\n1 1\n2 2\n3 3\n2 1\n3 1\n")));
-  EXPECT_EQ(pattern, pattern.transpose());
-  EXPECT_EQ(pattern(1, 0), -1.0);
-  EXPECT_GT(pattern(0, 0), 2.0);
-  // A triangular matrix is no symmetric one.
-  EXPECT_EQ(read_matrix(write("%%MatrixMarket matrix coordinate real general\n"
-                              "2 2 3\n1 1 1\n2 1 3\n2 2 1\n"))
-                .coeff(0, 1),
-            0.0);
-}
-
-TEST_F(MatrixMarket, WhatIsNoSuchMatrixIsRefusedWithTheFilesName) {
-  const std::string real = "%%MatrixMarket matrix coordinate real general\n";
-  EXPECT_EQ(refusal(""), "the first line is \"\"");
-  EXPECT_EQ(refusal("2 2 1\n1 1 1\n"), "the first line is \"2 2 1\"");
-  EXPECT_EQ(refusal("%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 1 0\n"),
-            "the matrix is complex");
-  EXPECT_EQ(refusal("%%MatrixMarket matrix array real general\n1 1\n1\n"), "the matrix is array");
-  EXPECT_EQ(refusal("%%MatrixMarket matrix coordinate real hermitian\n1 1 1\n1 1 1\n"),
-            "the matrix is hermitian");
-  EXPECT_EQ(refusal(real + "2 3 1\n1 1 1\n"), "the matrix has 2 rows and 3 columns");
-  EXPECT_EQ(refusal(real + "0 0 0\n"), "the matrix has 0 rows and 0 columns");
-  EXPECT_EQ(refusal(real + "2 2 0\n"), "the matrix has no entry");
-  EXPECT_EQ(refusal(real + "2 2 1\n1 1 nan\n"), "an entry is not a finite number");
-  EXPECT_EQ(refusal(real + "2 2 1\n1 1 inf\n"), "an entry is not a finite number");
-  const std::string wrong = "sizes, indices or numbers are not as they should be";
-  EXPECT_EQ(refusal(real), wrong);
-  EXPECT_EQ(refusal(real + "2 2 2\n1 1 1\n"), wrong);
-  EXPECT_EQ(refusal(real + "2 2 1\n3 1 1\n"), wrong);
-  EXPECT_EQ(refusal(real + "2 2 1\n1 one 1\n"), wrong);
-  EXPECT_THROW(static_cast<void>(read_matrix(folder_ / "none.mtx")), IoError);
-  const fs::path vector = write("%%MatrixMarket matrix array real general\n2 1\n1\n2\n");
-  EXPECT_EQ(read_vector(vector, 2), Eigen::Vector2d(1.0, 2.0));
-  EXPECT_THROW(static_cast<void>(read_vector(vector, 3)), InvalidInput);
-}
-
-TEST_F(MatrixMarket, ASidecarThatDoesNotFitIsRefused) {
-  const fs::path file =
-      write("%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1\n2 2 1\n");
-  const std::string good =
-      R"({"source": "s", "family": "", "n": 1, "T": 2, "h": 0.1, "integrator": "bdf1",
-          "system": "adjoint", "structure": "block_triangular", "blocks": [[2, 1]], "rows": 2,
-          "condition": null})";
-  const auto refused = [&](const std::string& from, const std::string& to) {
-    std::string text = good;
-    text.replace(text.find(from), from.size(), to);
-    std::ofstream(folder_ / "m.json") << text;
-    try {
-      static_cast<void>(read_benchmark_matrix(file));
-    } catch (const InvalidInput& error) {
-      EXPECT_TRUE(std::string(error.what()).starts_with((folder_ / "m.json").string()));
-      return true;
-    }
-    return false;
-  };
-  EXPECT_FALSE(refused("\"s\"", "\"s\""));
-  EXPECT_TRUE(refused("[[2, 1]]", "[[3, 1]]"));
-  EXPECT_TRUE(refused("[[2, 1]]", "[[-2, 1]]"));
-  EXPECT_TRUE(refused("\"rows\": 2", "\"rows\": 3"));
-  EXPECT_TRUE(refused("block_triangular", "blocky"));
-  EXPECT_TRUE(refused("\"n\": 1", "\"n\": \"one\""));
-  EXPECT_TRUE(refused("{", "[")) << "broken JSON";
 }
 
 }  // namespace
