@@ -9,6 +9,8 @@
 #include <fstream>
 
 #include "examples/solver_benchmark/cases.h"
+#include "examples/solver_benchmark/corpus.h"
+#include "examples/solver_benchmark/measure.h"
 #include "hbar/core/error.h"
 
 namespace hbar::solver_benchmark {
