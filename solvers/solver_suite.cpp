@@ -117,6 +117,7 @@ struct Shape {
   double entries_per_row = 0.0;
   double band_per_entry = 0.0;       ///< entries of the band, zeros included, for one of the matrix
   bool is_block_triangular = false;  ///< block lower triangular in options.block_sizes
+  int largest_block = 1;             ///< of options.block_sizes
 };
 
 Shape shape_of(const SolverOptions& options, const SparseMatrix& A) {
@@ -126,6 +127,9 @@ Shape shape_of(const SolverOptions& options, const SparseMatrix& A) {
     begin_of_row.insert(begin_of_row.end(), static_cast<std::size_t>(std::max(size, 0)), begin);
   }
   Shape shape;
+  for (const int size : options.block_sizes) {
+    shape.largest_block = std::max(shape.largest_block, size);
+  }
   shape.is_block_triangular =
       !begin_of_row.empty() && static_cast<Eigen::Index>(begin_of_row.size()) == A.rows();
   // Rows ascend within a column: its first and its last entry tell.
@@ -147,35 +151,36 @@ Shape shape_of(const SolverOptions& options, const SparseMatrix& A) {
   return shape;
 }
 
-// Where dense blocks by BLAS overtake one column at a time: entries per row of the matrix.
+// Measured on the matrices of `hbar corpus`, with the BLAS that a fresh system has
+// (doc/solvers.md). From so many entries per row on, dense blocks overtake one column at a time.
 constexpr double kManyEntries = 48.0;
-// Up to this many places of the band for one entry, a matrix is eliminated as it comes.
+// Up to this many places of the band for one entry, a band of dense blocks is worth its zeros.
 constexpr double kNarrowBand = 3.0;
+// Up to these sizes, a band of numbers is faster than one of blocks: for H̄, for definite matrices.
+constexpr int kTinyBlock = 2;
+constexpr int kSmallBlock = 5;
 
-/// Rules for choose_solver, the first that fits decides; the last but one is for builds without
-/// UMFPACK as well.
+/// Rules for choose_solver, the first that fits, and whose solver this build has, decides.
 std::vector<std::pair<bool, SolverChoice>> rules(const SolverOptions& options, const Shape& shape) {
   using enum Ordering;
   const bool definite = options.structure == Structure::kDefinite;
   const bool quasi_definite = options.structure == Structure::kQuasiDefinite;
+  const bool triangular = shape.is_block_triangular && !definite && !quasi_definite;
   const bool dense = shape.entries_per_row > kManyEntries;
   const bool narrow = shape.band_per_entry <= kNarrowBand;
   return {
-      {shape.is_block_triangular && !definite && !quasi_definite,
-       {"block_substitution", kDefault, "block triangular: substitution has no fill"}},
-      {definite && dense && narrow,
-       {"cholmod_supernodal", kNatural,
-        "definite, a band of large blocks: dense Cholesky factors in the given order"}},
-      {definite && dense,
-       {"cholmod_supernodal", kAmd,
-        "definite, with many entries in a row: dense Cholesky factors"}},
+      {triangular && narrow && shape.largest_block <= kTinyBlock,
+       {"lapack_band", kDefault, "block triangular with tiny blocks: a band of numbers"}},
+      {triangular, {"block_substitution", kDefault, "block triangular: substitution has no fill"}},
+      {definite && narrow && shape.largest_block <= kSmallBlock,
+       {"lapack_band", kDefault, "definite, a narrow band of small blocks: a band of numbers"}},
       {definite && narrow,
-       {"cholmod_llt", kNatural, "definite, a narrow band: Cholesky factors in the given order"}},
-      {definite, {"cholmod_llt", kAmd, "definite, with few entries in a row: Cholesky factors"}},
+       {"block_banded", kDefault, "definite, a narrow band: dense factors of its blocks"}},
+      {definite, {"cholmod_llt", kAmd, "definite, no narrow band: sparse Cholesky factors"}},
       {quasi_definite,
        {"cholmod_ldlt", kNatural, "quasi-definite: LDL' without pivoting, in the given order"}},
-      {dense, {"umfpack", kDefault, "many entries in a row: LU by dense blocks"}},
-      {true, {"klu", kDefault, "few entries in a row, or no other solver: sparse LU without BLAS"}},
+      {dense, {"eigen_sparse_lu", kDefault, "many entries in a row: sparse LU by supernodes"}},
+      {true, {"klu", kDefault, "few entries in a row: sparse LU, a column at a time"}},
   };
 }
 

@@ -76,15 +76,17 @@ struct Wish {
 };
 
 TEST(ChooseSolver, GoesByTheStructure) {
+  const std::vector<int> tiny(80, 2);
   const std::vector<int> small(40, 4);
   const std::vector<int> large(10, 40);
   const std::vector<Wish> wishes = {
+      {Structure::kBlockTriangular, tiny, {"lapack_band", "block_substitution"}},
       {Structure::kBlockTriangular, small, {"block_substitution"}},
       {Structure::kBlockTriangular, large, {"block_substitution"}},
       {Structure::kPeriodic, small, {"klu"}},
-      {Structure::kPeriodic, large, {"umfpack", "klu"}},
-      {Structure::kDefinite, small, {"cholmod_llt", "klu"}},
-      {Structure::kDefinite, large, {"cholmod_supernodal", "umfpack", "klu"}},
+      {Structure::kPeriodic, large, {"eigen_sparse_lu"}},
+      {Structure::kDefinite, small, {"lapack_band", "block_banded"}},
+      {Structure::kDefinite, large, {"block_banded"}},
       {Structure::kQuasiDefinite, small, {"cholmod_ldlt", "klu"}},
       {Structure::kGeneral, small, {"klu"}},
   };
