@@ -12,6 +12,9 @@
 namespace hbar::solver_benchmark {
 namespace {
 
+// gnuplot begins again after so many colours; the lines are dashed then.
+constexpr int kColours = 8;
+
 std::string head(const std::string& name, const std::string& title) {
   return fmt::format(
       "set terminal svg size 860,520 noenhanced font 'sans,13' background 'white'\n"
@@ -21,8 +24,8 @@ std::string head(const std::string& name, const std::string& title) {
 
 std::string add_line(Plot& plot, std::size_t index, const std::string& style,
                      const std::string& title) {
-  return fmt::format("{} {} index {} with {} title {}", index == 0 ? "plot" : ",\\\n    ",
-                     quoted(plot.name + ".dat"), index, style, quoted(title));
+  return fmt::format("{} {} index {} with {} dt {} title {}", index == 0 ? "plot" : ",\\\n    ",
+                     quoted(plot.name + ".dat"), index, style, 1 + index / kColours, quoted(title));
 }
 
 enum class Quantity { kTime, kMemory };

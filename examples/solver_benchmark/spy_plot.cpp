@@ -13,7 +13,7 @@ namespace hbar::solver_benchmark {
 namespace {
 
 /// Of larger matrices so many rows are shown: beyond, single entries can no longer be seen.
-constexpr int kShownRows = 400;
+constexpr int kShownRows = 160;
 
 void add_point(std::string& data, Eigen::Index row, Eigen::Index column) {
   fmt::format_to(std::back_inserter(data), "{} {}\n", column + 1, row + 1);
