@@ -208,4 +208,34 @@ inline void expect_the_same_in_two_threads(Maker make, const SolverOptions& opti
   EXPECT_EQ(first + second, 0);
 }
 
+/// A solver of general matrices agrees with dense LU on matrices of several kinds.
+inline void expect_agrees_in_every_ordering(Maker make, std::initializer_list<Ordering> orderings) {
+  for (const Ordering ordering : orderings) {
+    for (const IndexWidth width : kWidths) {
+      SCOPED_TRACE(name_of(ordering));
+      for (const SparseMatrix& A :
+           {random_sparse(60, 3, 1), random_block_lower({4, 1, 7, 12, 3}, 2),
+            random_definite(50, 2, 3)}) {
+        expect_agrees_with_dense(*factorized(make, options_of(ordering, width), A), A);
+      }
+    }
+  }
+}
+
+/// It serves other values of a pattern, and another pattern, after a refusal, too.
+inline void expect_serves_again_in_every_ordering(Maker make,
+                                                  std::initializer_list<Ordering> orderings) {
+  const SparseMatrix A = random_sparse(60, 3, 1);
+  SparseMatrix B = A;
+  B.diagonal() *= -1.5;
+  SparseMatrix zero = A;
+  zero.coeffs().setZero();
+  for (const Ordering ordering : orderings) {
+    for (const IndexWidth width : kWidths) {
+      const auto solver = make(options_of(ordering, width));
+      expect_serves_again(*solver, A, B, zero, random_sparse(90, 2, 1));
+    }
+  }
+}
+
 }  // namespace hbar::solvers::testing

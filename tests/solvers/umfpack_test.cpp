@@ -17,31 +17,11 @@ constexpr auto kOrderingsOfUmfpack = {Ordering::kDefault, Ordering::kNatural, Or
                                       Ordering::kColamd, Ordering::kMetis};
 
 TEST(Umfpack, AgreesWithDenseLuInEveryOrderingAndWidth) {
-  for (const Ordering ordering : kOrderingsOfUmfpack) {
-    for (const IndexWidth width : kWidths) {
-      SCOPED_TRACE(name_of(ordering));
-      for (const SparseMatrix& A :
-           {random_sparse(60, 3, 1), testing::random_block_lower({4, 1, 7, 12, 3}, 2),
-            testing::random_definite(50, 2, 3)}) {
-        testing::expect_agrees_with_dense(
-            *testing::factorized(make_umfpack, options_of(ordering, width), A), A);
-      }
-    }
-  }
+  testing::expect_agrees_in_every_ordering(make_umfpack, kOrderingsOfUmfpack);
 }
 
 TEST(Umfpack, ServesNewValuesAndNewPatterns) {
-  const SparseMatrix A = random_sparse(60, 3, 1);
-  SparseMatrix B = A;
-  B.diagonal() *= -1.5;
-  SparseMatrix zero = A;
-  zero.coeffs().setZero();
-  for (const Ordering ordering : kOrderingsOfUmfpack) {
-    for (const IndexWidth width : kWidths) {
-      const auto solver = make_umfpack(options_of(ordering, width));
-      testing::expect_serves_again(*solver, A, B, zero, random_sparse(90, 2, 1));
-    }
-  }
+  testing::expect_serves_again_in_every_ordering(make_umfpack, kOrderingsOfUmfpack);
 }
 
 TEST(Umfpack, HeedsTheOrdering) {
