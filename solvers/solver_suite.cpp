@@ -116,6 +116,7 @@ std::vector<SolverEntry> every_solver() {
 struct Shape {
   double entries_per_row = 0.0;
   double band_per_entry = 0.0;       ///< entries of the band, zeros included, for one of the matrix
+  double band_places = 0.0;          ///< all of these
   bool is_block_triangular = false;  ///< block lower triangular in options.block_sizes
   int largest_block = 1;             ///< of options.block_sizes
 };
@@ -147,7 +148,8 @@ Shape shape_of(const SolverOptions& options, const SparseMatrix& A) {
   const double rows = static_cast<double>(std::max<Eigen::Index>(A.rows(), 1));
   const double entries = static_cast<double>(std::max<Eigen::Index>(A.nonZeros(), 1));
   shape.entries_per_row = entries / rows;
-  shape.band_per_entry = rows * (2.0 * static_cast<double>(width) + 1.0) / entries;
+  shape.band_places = rows * (2.0 * static_cast<double>(width) + 1.0);
+  shape.band_per_entry = shape.band_places / entries;
   return shape;
 }
 
@@ -167,7 +169,9 @@ std::vector<std::pair<bool, SolverChoice>> rules(const SolverOptions& options, c
   const bool quasi_definite = options.structure == Structure::kQuasiDefinite;
   const bool triangular = shape.is_block_triangular && !definite && !quasi_definite;
   const bool dense = shape.entries_per_row > kManyEntries;
-  const bool narrow = shape.band_per_entry <= kNarrowBand;
+  // Factors of a band take up to twice its places.
+  const bool narrow =
+      shape.band_per_entry <= kNarrowBand && 16.0 * shape.band_places <= kMaxBandBytes;
   return {
       {triangular && narrow && shape.largest_block <= kTinyBlock,
        {"lapack_band", kDefault, "block triangular with tiny blocks: a band of numbers"}},
