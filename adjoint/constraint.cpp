@@ -59,9 +59,10 @@ ConstraintPointer numbers_within(std::vector<std::string> names, std::vector<Par
                                       Eigen::VectorXd::Ones(count));
 }
 
-class FunctionTerm final : public ConstraintTerm {
+class FunctionConstraint final : public ConstraintTerm {
  public:
-  FunctionTerm(ConstraintRows rows, std::vector<PartialPlace> places, Write values, Write partials)
+  FunctionConstraint(ConstraintRows rows, std::vector<PartialPlace> places, Write values,
+                     Write partials)
       : ConstraintTerm(std::move(rows), std::move(places)),
         values_(std::move(values)),
         partials_(std::move(partials)) {}
@@ -210,8 +211,8 @@ ConstraintPointer parameter_sum(const ParameterSet& set, const std::string& name
 
 ConstraintPointer user_constraint(ConstraintRows rows, std::vector<PartialPlace> places,
                                   Write values, Write partials) {
-  return std::make_shared<FunctionTerm>(std::move(rows), std::move(places), std::move(values),
-                                        std::move(partials));
+  return std::make_shared<FunctionConstraint>(std::move(rows), std::move(places), std::move(values),
+                                              std::move(partials));
 }
 
 }  // namespace hbar

@@ -10,9 +10,9 @@ namespace {
 using Value = std::function<double(const TrajectoryValues&)>;
 using AddPartials = std::function<void(const TrajectoryValues&, TrajectoryPartials&)>;
 
-class FunctionTerm final : public ObjectiveTerm {
+class FunctionObjective final : public ObjectiveTerm {
  public:
-  FunctionTerm(std::string name, Value value, AddPartials add)
+  FunctionObjective(std::string name, Value value, AddPartials add)
       : name_(std::move(name)), value_(std::move(value)), add_(std::move(add)) {}
 
   [[nodiscard]] std::string name() const override { return name_; }
@@ -84,7 +84,8 @@ TermPointer squared_field(const char* name, Eigen::MatrixXd TrajectoryValues::*f
 }  // namespace
 
 TermPointer user_term(std::string name, Value value, AddPartials add_partials) {
-  return std::make_shared<FunctionTerm>(std::move(name), std::move(value), std::move(add_partials));
+  return std::make_shared<FunctionObjective>(std::move(name), std::move(value),
+                                             std::move(add_partials));
 }
 
 TermPointer squared_variables(double weight) {

@@ -83,6 +83,13 @@ function(hbar_install_target target)
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
+# hbar_compile_in_batches(TARGETS...): headers and templates are compiled once for several files, if
+# HBAR_UNITY asks for it; then the files of a target share their unnamed namespace. A batch needs up
+# to 2 GB of memory.
+function(hbar_compile_in_batches)
+  set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ${HBAR_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
+
 # hbar_add_floor(NAME FLOOR SOURCES... ): a library hbar_NAME, exported as hbar::NAME.
 function(hbar_add_floor name)
   add_library(hbar_${name} ${ARGN})
@@ -98,6 +105,9 @@ function(hbar_add_floor name)
   target_include_directories(hbar_${name} PUBLIC
     $<BUILD_INTERFACE:${HBAR_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(hbar_${name} PRIVATE $<BUILD_INTERFACE:hbar_flags>)
+  if(name MATCHES "^(core|scene|adjoint)$")
+    hbar_compile_in_batches(hbar_${name})
+  endif()
   # Eigen takes a third of most files' compilation; it is read once.
   if(HBAR_PRECOMPILE_HEADERS AND name MATCHES "^(core|scene|solvers|suite|adjoint)$")
     if(name STREQUAL "core")

@@ -9,7 +9,7 @@ namespace hbar {
 namespace {
 
 constexpr double kOrthonormal = 1e-9;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 bool is_pose(const RigidTransform<double>& X) {
   return X.p.allFinite() && X.R.allFinite() &&
@@ -207,7 +207,7 @@ int ModelBuilder::add_motor(const Motor& motor) {
   require(motor.lower <= motor.upper, concat(where, ": range is [", motor.lower, ", ", motor.upper,
                                              "]; the lower must not exceed the upper"));
   const bool limited = std::isfinite(motor.lower) && std::isfinite(motor.upper);
-  require(limited || (motor.lower == -kInfinity && motor.upper == kInfinity),
+  require(limited || (motor.lower == -kUnlimited && motor.upper == kUnlimited),
           where + ": a range must have both ends or none");
   require(std::isfinite(motor.P) && motor.P >= 0.0 && std::isfinite(motor.D) && motor.D >= 0.0,
           concat(where, ": P is ", motor.P, " and D is ", motor.D, "; both must be ≥ 0"));

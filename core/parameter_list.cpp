@@ -10,7 +10,7 @@
 namespace hbar {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
 /// Optimisers may come this close to zero mass or size, relative to the nominal one.
 constexpr double kSmallestShare = 1e-6;
@@ -42,7 +42,7 @@ class Lister {
     motors();
     for (int k = 0; k < 3; ++k) {
       add(ParameterKind::kGravity, 0, k, concat("gravity.", axis(k)),
-          concat(length_unit(model_.units()), "/s²"), model_.gravity()[k], -kInfinity, kInfinity);
+          concat(length_unit(model_.units()), "/s²"), model_.gravity()[k], -kUnbounded, kUnbounded);
     }
     for (int i = 0; i < model_.contact_count(); ++i) {
       contact_coefficients(i);
@@ -69,7 +69,7 @@ class Lister {
     }
     for (int k = 0; k < 3; ++k) {
       add(kind, link, 3 + k, concat(owner, ".translation.", axis(k)),
-          std::string(length_unit(model_.units())), 0.0, -kInfinity, kInfinity);
+          std::string(length_unit(model_.units())), 0.0, -kUnbounded, kUnbounded);
     }
   }
 
@@ -89,7 +89,7 @@ class Lister {
       for (int k = 0; k < 3; ++k) {
         add(ParameterKind::kContactPoint, link, 3 * i + k,
             concat("body.", owner.body.name, ".contact.", i, '.', axis(k)), unit,
-            owner.body.contact_points(k, i), -kInfinity, kInfinity);
+            owner.body.contact_points(k, i), -kUnbounded, kUnbounded);
       }
     }
   }
@@ -99,7 +99,7 @@ class Lister {
     const bool can_touch = owner.body.contact_points.cols() > 0;
     if (touches(link) || (can_touch && (owner.design_mask & kMaskContactScale) != 0)) {
       add(ParameterKind::kContactScale, link, 0, concat("body.", owner.body.name, ".contact_scale"),
-          "1", 1.0, 0.0, kInfinity);
+          "1", 1.0, 0.0, kUnbounded);
     }
   }
 
@@ -112,12 +112,12 @@ class Lister {
     const std::string name = concat("contact.", contact.name);
     const ContactCoefficients& c = contact.coefficients;
     add(ParameterKind::kContactCoefficient, i, 0, name + ".kn", concat(force, '/', length), c.kn,
-        0.0, kInfinity);
+        0.0, kUnbounded);
     add(ParameterKind::kContactCoefficient, i, 1, name + ".kt", concat(force, "·s/", length), c.kt,
-        0.0, kInfinity);
-    add(ParameterKind::kContactCoefficient, i, 2, name + ".mu", "1", c.mu, 0.0, kInfinity);
+        0.0, kUnbounded);
+    add(ParameterKind::kContactCoefficient, i, 2, name + ".mu", "1", c.mu, 0.0, kUnbounded);
     add(ParameterKind::kContactCoefficient, i, 3, name + ".damping",
-        concat(force, "·s/", length, linear ? "" : "²"), c.damping, 0.0, kInfinity);
+        concat(force, "·s/", length, linear ? "" : "²"), c.damping, 0.0, kUnbounded);
   }
 
   void sizes(int link) {
@@ -127,7 +127,7 @@ class Lister {
     for (std::size_t k = 0; k < values.size(); ++k) {
       add(ParameterKind::kSize, link, static_cast<int>(k),
           concat("body.", body.name, '.', names[k]), std::string(length_unit(model_.units())),
-          values[k], kSmallestShare * values[k], kInfinity);
+          values[k], kSmallestShare * values[k], kUnbounded);
     }
   }
 
@@ -135,11 +135,11 @@ class Lister {
     const Body& body = model_.link(link).body;
     const std::string mass(mass_unit(model_.units()));
     add(ParameterKind::kMass, link, 0, concat("body.", body.name, ".mass"), mass, body.mass,
-        kSmallestShare * body.mass, kInfinity);
+        kSmallestShare * body.mass, kUnbounded);
     for (int k = 0; k < 3; ++k) {
       add(ParameterKind::kInertia, link, k, concat("body.", body.name, ".inertia.", axis(k)),
           concat(mass, "·", length_unit(model_.units()), "²"), body.inertia[k],
-          kSmallestShare * body.inertia[k], kInfinity);
+          kSmallestShare * body.inertia[k], kUnbounded);
     }
   }
 
@@ -155,9 +155,9 @@ class Lister {
   void stiffness_and_damping(int link) {
     const Joint& joint = model_.link(link).joint;
     add(ParameterKind::kStiffness, link, 0, concat("joint.", joint.name, ".stiffness"),
-        force_per(joint, false), joint.stiffness, 0.0, kInfinity);
+        force_per(joint, false), joint.stiffness, 0.0, kUnbounded);
     add(ParameterKind::kDamping, link, 0, concat("joint.", joint.name, ".damping"),
-        force_per(joint, true), joint.damping, 0.0, kInfinity);
+        force_per(joint, true), joint.damping, 0.0, kUnbounded);
   }
 
   void motors() {
@@ -169,9 +169,9 @@ class Lister {
       const Joint& joint = model_.link(motor.link).joint;
       const int owner = static_cast<int>(m);
       add(ParameterKind::kMotorP, owner, 0, concat("motor.", joint.name, ".P"),
-          force_per(joint, false), motor.P, 0.0, kInfinity);
+          force_per(joint, false), motor.P, 0.0, kUnbounded);
       add(ParameterKind::kMotorD, owner, 0, concat("motor.", joint.name, ".D"),
-          force_per(joint, true), motor.D, 0.0, kInfinity);
+          force_per(joint, true), motor.D, 0.0, kUnbounded);
     }
   }
 

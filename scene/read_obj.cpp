@@ -12,7 +12,7 @@ namespace hbar::scene {
 namespace {
 
 /// Sine of the angle below which two axes count as parallel.
-constexpr double kParallel = 1e-9;
+constexpr double kSmallestSine = 1e-9;
 
 /// Calls `line(number, words)` for each line that has words before its comment.
 template <typename Line>
@@ -197,7 +197,7 @@ std::vector<SensorPoint> read_sensor_points_text(std::string_view text, const st
     const SensorPoint point = {read_point(words, 0, name, line),
                                read_point(words, 3, name, line).stableNormalized(),
                                read_point(words, 6, name, line).stableNormalized()};
-    if (point.axis0.cross(point.axis1).norm() < kParallel) {
+    if (point.axis0.cross(point.axis1).norm() < kSmallestSine) {
       fail(name, line, "the axes a0 and a1 are zero or parallel; they span a plane");
     }
     points.push_back(point);

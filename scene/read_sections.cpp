@@ -10,7 +10,7 @@ namespace {
 /// their distance.
 constexpr double kOutOfPlane = 1e-6;
 /// Sine of the angle below which two axes count as parallel.
-constexpr double kParallel = 1e-9;
+constexpr double kLeastSine = 1e-9;
 
 Eigen::Vector3d vector(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
@@ -20,7 +20,7 @@ RectArray read_rect_array(const XmlElement& element) {
                          element.integers<2>("resolution")};
   const Eigen::Vector3d normal =
       vector(points.axis0).stableNormalized().cross(vector(points.axis1).stableNormalized());
-  if (normal.norm() < kParallel) {
+  if (normal.norm() < kLeastSine) {
     element.fail("axis1", "parallel to axis0", "the two axes must not be parallel");
   }
   const Eigen::Vector3d diagonal = vector(points.rect_pos1) - vector(points.rect_pos0);
