@@ -20,10 +20,11 @@ std::function<std::string(int)> stage_names(const Simulator& simulator, const Ti
 const Linearization& FactorizedLinearization::update(const Trajectory& trajectory) {
   const Linearization& out = linearizer_.linearize(trajectory);
   linearization_ = &out;
-  solver_.factorize(
-      out.H.matrix(),
-      {.structure = solvers::Structure::kBlockTriangular, .block_sizes = out.block_sizes},
-      stage_names(simulator_, trajectory.timeline), linearizer_.pattern_count());
+  solver_.factorize(out.H.matrix(), linearizer_.pattern_count(), [&] {
+    return solvers::MatrixDescription{
+        {.structure = solvers::Structure::kBlockTriangular, .block_sizes = out.block_sizes},
+        stage_names(simulator_, trajectory.timeline)};
+  });
   return out;
 }
 

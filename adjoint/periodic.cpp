@@ -79,8 +79,11 @@ void PeriodicSolver::Workspace::close(const Eigen::VectorXd& x) {
 
 const Linearization& PeriodicSolver::Workspace::factorize_here() {
   const Linearization& system = linearizer.linearize(trajectory);
-  solver.factorize(periodic_matrix(simulator.model(), trajectory, system), periodic_options(system),
-                   stage_names(simulator, trajectory.timeline), linearizer.pattern_count());
+  solver.factorize(periodic_matrix(simulator.model(), trajectory, system),
+                   linearizer.pattern_count(), [&] {
+                     return solvers::MatrixDescription{periodic_options(system),
+                                                       stage_names(simulator, trajectory.timeline)};
+                   });
   return system;
 }
 

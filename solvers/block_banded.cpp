@@ -2,11 +2,12 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 #include <new>
+#include <numeric>
 #include <utility>
 
-#include "hbar/solvers/suitesparse.h"
+#include "hbar/solvers/band.h"
+#include "hbar/solvers/row_scaling.h"
 
 namespace hbar::solvers {
 namespace {
@@ -118,14 +119,7 @@ class BlockBanded final : public LinearSolver {
 void BlockBanded::place_blocks() {
   std::vector<int> sizes = block_sizes_;
   if (sizes.empty()) {
-    int width = 0;
-    for (int j = 0; j < size(); ++j) {
-      const int* rows = matrix().innerIndexPtr();
-      const int first = rows[matrix().outerIndexPtr()[j]];
-      const int last = rows[matrix().outerIndexPtr()[j + 1] - 1];
-      width = std::max({width, j - first, last - j});
-    }
-    const int block = std::clamp(width / 4, 4, 48);
+    const int block = std::clamp(band_of(matrix()).width() / 4, 4, 48);
     for (int row = 0; row < size(); row += block) sizes.push_back(std::min(block, size() - row));
   }
   columns_.assign(sizes.size(), {});
@@ -167,11 +161,7 @@ void BlockBanded::outline() {
     offset += static_cast<std::size_t>(entries);
     bytes += 8.0 * entries;
   }
-  if (bytes > kMaxBandBytes) {
-    throw InvalidInput(concat("block_banded: analyze: the band of the ", size(), " x ", size(),
-                              " matrix would take ", bytes, " bytes; allowed: ", kMaxBandBytes,
-                              "; use klu or umfpack for such a matrix"));
-  }
+  refuse_wide_band(name(), matrix(), bytes);
   factors_.clear();
   factors_.resize(offset);
 }
@@ -186,7 +176,7 @@ void BlockBanded::do_analyze() {
     column_of_.resize(n);
     pivots_.resize(n);
     scale_.resize(size());
-    for (int i = 0; i < size(); ++i) column_of_[static_cast<std::size_t>(i)] = i;
+    std::iota(column_of_.begin(), column_of_.end(), 0);
   } catch (const std::bad_alloc&) {
     throw_out_of_memory("analyze");
   }
@@ -228,12 +218,8 @@ void BlockBanded::eliminate(const Column& earlier, const Column& column, Panel p
 }
 
 void BlockBanded::do_factorize() {
-  // Powers of two: scaling rounds nothing.
-  for (int i = 0; i < size(); ++i) {
-    const double largest = row_scale()[i];
-    scale_[i] = largest > 0.0 ? std::exp2(-std::max(std::ilogb(largest), -1022)) : 1.0;
-    row_of_[static_cast<std::size_t>(i)] = i;
-  }
+  set_power_of_two_scales(row_scale(), scale_);
+  std::iota(row_of_.begin(), row_of_.end(), 0);
   flops_ = 0.0;
   std::size_t first = 0;
   for (std::size_t b = 0; b < columns_.size(); ++b) {
@@ -335,8 +321,8 @@ void BlockBanded::do_solve(System system, MatrixSpan X) {
 }  // namespace
 
 std::unique_ptr<LinearSolver> make_block_banded(const SolverOptions& options) {
-  suitesparse::refuse_other_orderings("block_banded", options.ordering,
-                                      {Ordering::kDefault, Ordering::kNatural});
+  refuse_other_orderings("block_banded", options.ordering,
+                         {Ordering::kDefault, Ordering::kNatural});
   return std::make_unique<BlockBanded>(options.block_sizes);
 }
 

@@ -6,9 +6,6 @@
 
 namespace hbar::solvers {
 
-/// Bytes that the factors of a band may take: 8 GiB. A wider band is no band: it is refused.
-inline constexpr double kMaxBandBytes = 8.0 * 1024.0 * 1024.0 * 1024.0;
-
 /// Dense LU of a block-banded matrix, a block column at a time: partial pivoting among all rows of
 /// the block column from its diagonal block down, so that every regular matrix is safe, and the
 /// upper band grows by the lower one. The band follows the outline of the matrix, blocks may differ
@@ -18,7 +15,7 @@ inline constexpr double kMaxBandBytes = 8.0 * 1024.0 * 1024.0 * 1024.0;
 ///                 suits the bandwidth  [blocks]
 /// @throws InvalidInput if a block size is not positive, or ordering is not kDefault or kNatural
 /// analyze() throws InvalidInput if the block sizes do not add up to the rows of the matrix, or the
-/// factors would take more than kMaxBandBytes.
+/// factors would take more than kMaxBandBytes (band.h).
 [[nodiscard]] std::unique_ptr<LinearSolver> make_block_banded(const SolverOptions& options = {});
 
 }  // namespace hbar::solvers

@@ -146,7 +146,8 @@ void BlockSubstitution::factorize_block(int block) {
 
 void BlockSubstitution::do_solve(System system, MatrixSpan X) { substitute(system, X, nullptr); }
 
-bool BlockSubstitution::do_solve_with_residuals(System system, MatrixSpan X, MatrixSpan R) {
+bool BlockSubstitution::do_solve_with_residuals(System system, MatrixSpan X, Eigen::MatrixXd& R) {
+  R.resize(X.rows(), X.cols());
   substitute(system, X, &R);
   return true;
 }
@@ -165,7 +166,7 @@ SparseColumn BlockSubstitution::in_block(int column) const {
 
 /// Each block row's right-hand side less what is known of it is what its diagonal block is solved
 /// with; what that leaves is the row's residual.
-void BlockSubstitution::substitute(System system, MatrixSpan X, MatrixSpan* R) {
+void BlockSubstitution::substitute(System system, MatrixSpan X, Eigen::MatrixXd* R) {
   const bool forward = system == System::kPlain;
   for (int i = 0; i < block_count(); ++i) {
     const int b = forward ? i : block_count() - 1 - i;

@@ -40,9 +40,9 @@ class BlockSubstitution final : public LinearSolver {
   void do_analyze() override;
   void do_factorize() override;
   void do_solve(System system, MatrixSpan X) override;
-  bool do_solve_with_residuals(System system, MatrixSpan X, MatrixSpan R) override;
+  bool do_solve_with_residuals(System system, MatrixSpan X, Eigen::MatrixXd& R) override;
   void factorize_block(int block);
-  void substitute(System system, MatrixSpan X, MatrixSpan* R);
+  void substitute(System system, MatrixSpan X, Eigen::MatrixXd* R);
   void solve_block(int block, System system, MatrixSpan X_b);
   void subtract_diagonal(int block, System system, const MatrixView& X_b, MatrixSpan R_b) const;
   void subtract_below(int block, MatrixSpan X) const;

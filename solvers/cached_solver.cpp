@@ -19,11 +19,12 @@ SolverFactory default_solver() {
 CachedSolver::CachedSolver(SolverFactory factory)
     : factory_(factory ? std::move(factory) : default_solver()) {}
 
-LinearSolver& CachedSolver::factorize(const SparseMatrix& A, const SolverOptions& options,
-                                      const std::function<std::string(int)>& names, int pattern) {
+LinearSolver& CachedSolver::factorize(const SparseMatrix& A, int pattern,
+                                      const std::function<MatrixDescription()>& describe) {
   if (pattern_ != pattern) {
-    solver_ = factory_(options, A);
-    solver_->name_unknowns(names);
+    const MatrixDescription description = describe();
+    solver_ = factory_(description.options, A);
+    solver_->name_unknowns(description.names);
     solver_->analyze(A);
     pattern_ = pattern;
   }

@@ -9,6 +9,12 @@ namespace hbar::solvers {
 /// Block substitution where the matrix is block triangular, KLU otherwise: needs no optional part.
 [[nodiscard]] SolverFactory default_solver();
 
+/// What a solver has to know of a matrix besides its pattern.
+struct MatrixDescription {
+  SolverOptions options;
+  std::function<std::string(int)> names;  ///< of the unknowns, for messages
+};
+
 /// A solver that is made on first use, and made and analysed again only when the pattern changes.
 class CachedSolver {
  public:
@@ -17,13 +23,12 @@ class CachedSolver {
 
   /// Factorises A.
   ///
-  /// @param options   of A; read when the pattern is another one
-  /// @param names     of A's unknowns, for messages; read like options
   /// @param pattern   the caller's count of patterns so far, > 0: the same number means the same
   ///                  pattern
+  /// @param describe  asked only when the pattern is another one
   /// @throws what LinearSolver::analyze and factorize throw
-  LinearSolver& factorize(const SparseMatrix& A, const SolverOptions& options,
-                          const std::function<std::string(int)>& names, int pattern);
+  LinearSolver& factorize(const SparseMatrix& A, int pattern,
+                          const std::function<MatrixDescription()>& describe);
 
   /// The last matrix's; there is none before the first factorize().
   [[nodiscard]] LinearSolver& solver() { return *solver_; }

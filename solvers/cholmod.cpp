@@ -328,11 +328,11 @@ class Cholmod final : public LinearSolver {
 std::unique_ptr<LinearSolver> make(Kind kind, const SolverOptions& options) {
   using enum Ordering;
   if (kind == Kind::kNormal) {
-    suitesparse::refuse_other_orderings(name_of(kind), options.ordering,
-                                        {kDefault, kNatural, kAmd, kColamd, kMetis, kNested});
+    refuse_other_orderings(name_of(kind), options.ordering,
+                           {kDefault, kNatural, kAmd, kColamd, kMetis, kNested});
   } else {
-    suitesparse::refuse_other_orderings(name_of(kind), options.ordering,
-                                        {kDefault, kNatural, kAmd, kMetis, kNested});
+    refuse_other_orderings(name_of(kind), options.ordering,
+                           {kDefault, kNatural, kAmd, kMetis, kNested});
   }
   if (options.index_width == IndexWidth::k64) {
     return std::make_unique<Cholmod<WideIndex>>(kind, options.ordering);

@@ -3,10 +3,9 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseLU>
 #include <algorithm>
-#include <cmath>
 #include <new>
 
-#include "hbar/solvers/suitesparse.h"
+#include "hbar/solvers/row_scaling.h"
 
 namespace hbar::solvers {
 namespace {
@@ -131,12 +130,8 @@ class EigenSparseLu final : public LinearSolver {
     }
   }
 
-  /// Rows scaled by powers of two, which rounds nothing.
   void scale_rows() {
-    for (int i = 0; i < size(); ++i) {
-      const double largest = row_scale()[i];
-      scale_[i] = largest > 0.0 ? std::exp2(-std::max(std::ilogb(largest), -1022)) : 1.0;
-    }
+    set_power_of_two_scales(row_scale(), scale_);
     for (Eigen::Index k = 0; k < matrix().nonZeros(); ++k) {
       scaled_.valuePtr()[k] = matrix().valuePtr()[k] * scale_[matrix().innerIndexPtr()[k]];
     }
@@ -169,8 +164,7 @@ std::unique_ptr<LinearSolver> make(IndexWidth width) {
 
 std::unique_ptr<LinearSolver> make_eigen_sparse_lu(const SolverOptions& options) {
   using enum Ordering;
-  suitesparse::refuse_other_orderings("eigen_sparse_lu", options.ordering,
-                                      {kDefault, kNatural, kAmd, kColamd});
+  refuse_other_orderings("eigen_sparse_lu", options.ordering, {kDefault, kNatural, kAmd, kColamd});
   if (options.ordering == kNatural) return make<Natural>(options.index_width);
   if (options.ordering == kAmd) return make<Amd>(options.index_width);
   return make<Eigen::COLAMDOrdering>(options.index_width);

@@ -171,7 +171,7 @@ class Klu final : public LinearSolver {
 
 std::unique_ptr<LinearSolver> make_klu(const SolverOptions& options) {
   using enum Ordering;
-  suitesparse::refuse_other_orderings("klu", options.ordering, {kDefault, kNatural, kAmd, kColamd});
+  refuse_other_orderings("klu", options.ordering, {kDefault, kNatural, kAmd, kColamd});
   if (options.index_width == IndexWidth::k64) {
     return std::make_unique<Klu<WideIndex>>(options.ordering);
   }

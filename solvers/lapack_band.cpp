@@ -1,13 +1,13 @@
 #include "hbar/solvers/lapack_band.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <new>
+#include <numeric>
 #include <utility>
 
-#include "hbar/solvers/block_banded.h"
-#include "hbar/solvers/suitesparse.h"
+#include "hbar/solvers/band.h"
+#include "hbar/solvers/row_scaling.h"
 
 extern "C" {
 void dgbtrf_(const int* m, const int* n, const int* kl, const int* ku, double* ab, const int* ldab,
@@ -34,19 +34,10 @@ class LapackBand final : public LinearSolver {
 
  private:
   void do_analyze() override {
-    const int* rows = matrix().innerIndexPtr();
-    lower_ = 0;
-    upper_ = 0;
-    for (int j = 0; j < size(); ++j) {
-      upper_ = std::max(upper_, j - rows[matrix().outerIndexPtr()[j]]);
-      lower_ = std::max(lower_, rows[matrix().outerIndexPtr()[j + 1] - 1] - j);
-    }
-    const double bytes = 8.0 * (2.0 * lower_ + upper_ + 1.0) * size();
-    if (bytes > kMaxBandBytes) {
-      throw InvalidInput(concat("lapack_band: analyze: the band of the ", size(), " x ", size(),
-                                " matrix would take ", bytes, " bytes; allowed: ", kMaxBandBytes,
-                                "; use klu or umfpack for such a matrix"));
-    }
+    const Band band = band_of(matrix());
+    lower_ = band.lower;
+    upper_ = band.upper;
+    refuse_wide_band(name(), matrix(), 8.0 * (2.0 * lower_ + upper_ + 1.0) * size());
     height_ = 2 * lower_ + upper_ + 1;
     const auto n = static_cast<std::size_t>(size());
     try {
@@ -59,7 +50,7 @@ class LapackBand final : public LinearSolver {
     } catch (const std::bad_alloc&) {
       throw_out_of_memory("analyze");
     }
-    for (int i = 0; i < size(); ++i) column_of_[static_cast<std::size_t>(i)] = i;
+    std::iota(column_of_.begin(), column_of_.end(), 0);
   }
 
   void do_factorize() override {
@@ -90,12 +81,9 @@ class LapackBand final : public LinearSolver {
     if (system == System::kTransposed) X = scale_.asDiagonal() * X;
   }
 
-  /// The matrix in LAPACK's layout, its rows scaled by powers of two, which rounds nothing.
+  /// The matrix in LAPACK's layout, its rows scaled.
   void fill_band() {
-    for (int i = 0; i < size(); ++i) {
-      const double largest = row_scale()[i];
-      scale_[i] = largest > 0.0 ? std::exp2(-std::max(std::ilogb(largest), -1022)) : 1.0;
-    }
+    set_power_of_two_scales(row_scale(), scale_);
     std::fill(band_.begin(), band_.end(), 0.0);
     for (int j = 0; j < size(); ++j) {
       for (int k = matrix().outerIndexPtr()[j]; k < matrix().outerIndexPtr()[j + 1]; ++k) {
@@ -133,8 +121,7 @@ class LapackBand final : public LinearSolver {
 }  // namespace
 
 std::unique_ptr<LinearSolver> make_lapack_band(const SolverOptions& options) {
-  suitesparse::refuse_other_orderings("lapack_band", options.ordering,
-                                      {Ordering::kDefault, Ordering::kNatural});
+  refuse_other_orderings("lapack_band", options.ordering, {Ordering::kDefault, Ordering::kNatural});
   return std::make_unique<LapackBand>();
 }
 

@@ -209,7 +209,6 @@ void LinearSolver::solve(System system, const MatrixView& B, MatrixSpan X) {
 }
 
 void LinearSolver::solve_in_place(System system, MatrixSpan X) {
-  residuals_.resize(X.rows(), X.cols());
   has_residuals_ = do_solve_with_residuals(system, X, residuals_);
   if (!has_residuals_) do_solve(system, X);
 }

@@ -156,8 +156,9 @@ class LinearSolver {
   /// they solve; others return false and leave X as it is.
   ///
   /// @param X  as in do_solve  [n x r]
-  /// @param R  residuals       [n x r]
-  virtual bool do_solve_with_residuals(System /*system*/, MatrixSpan /*X*/, MatrixSpan /*R*/) {
+  /// @param R  residuals, resized  [n x r]
+  virtual bool do_solve_with_residuals(System /*system*/, MatrixSpan /*X*/,
+                                       Eigen::MatrixXd& /*R*/) {
     return false;
   }
 

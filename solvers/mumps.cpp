@@ -39,7 +39,7 @@ std::mutex& mumps_mutex() {
 /// ICNTL(7): 1 takes the order of perm_in, 7 leaves the choice to MUMPS.
 int code_of(Ordering ordering) {
   using enum Ordering;
-  suitesparse::refuse_other_orderings("mumps", ordering, {kDefault, kNatural, kAmd, kMetis});
+  refuse_other_orderings("mumps", ordering, {kDefault, kNatural, kAmd, kMetis});
   if (ordering == kNatural) return 1;
   if (ordering == kAmd) return 0;
   return ordering == kMetis ? 5 : 7;

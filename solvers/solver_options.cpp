@@ -33,4 +33,13 @@ Ordering find_ordering(std::string_view name) {
   return static_cast<Ordering>(place - kOrderings.begin());
 }
 
+void refuse_other_orderings(std::string_view solver, Ordering ordering,
+                            std::initializer_list<Ordering> offered) {
+  if (std::find(offered.begin(), offered.end(), ordering) != offered.end()) return;
+  std::string names;
+  for (const Ordering known : offered) names += concat(names.empty() ? "" : ", ", name_of(known));
+  throw InvalidInput(concat(solver, ": the ordering \"", name_of(ordering),
+                            "\" is not offered; offered: ", names));
+}
+
 }  // namespace hbar::solvers

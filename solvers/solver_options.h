@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -53,5 +54,11 @@ using SolverFactory =
 [[nodiscard]] std::string_view name_of(Ordering ordering);
 /// @throws InvalidInput naming the orderings there are
 [[nodiscard]] Ordering find_ordering(std::string_view name);
+
+/// @param solver   its name
+/// @param offered  the orderings that it has, kDefault among them
+/// @throws InvalidInput naming the offered orderings if `ordering` is not among them
+void refuse_other_orderings(std::string_view solver, Ordering ordering,
+                            std::initializer_list<Ordering> offered);
 
 }  // namespace hbar::solvers

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "hbar/solvers/band.h"
 #include "hbar/solvers/block_banded.h"
 #include "hbar/solvers/block_substitution.h"
 #include "hbar/solvers/cholmod.h"
@@ -133,22 +134,17 @@ Shape shape_of(const SolverOptions& options, const SparseMatrix& A) {
   }
   shape.is_block_triangular =
       !begin_of_row.empty() && static_cast<Eigen::Index>(begin_of_row.size()) == A.rows();
-  // Rows ascend within a column: its first and its last entry tell.
-  int width = 0;
-  for (int j = 0; j < A.cols(); ++j) {
+  for (int j = 0; shape.is_block_triangular && j < A.cols(); ++j) {
+    // Rows ascend within a column.
     const int begin = A.outerIndexPtr()[j];
-    const int end = A.outerIndexPtr()[j + 1];
-    if (begin == end) continue;
-    const int first = A.innerIndexPtr()[begin];
-    width = std::max({width, j - first, A.innerIndexPtr()[end - 1] - j});
-    if (shape.is_block_triangular && first < begin_of_row[static_cast<std::size_t>(j)]) {
-      shape.is_block_triangular = false;
-    }
+    shape.is_block_triangular =
+        begin == A.outerIndexPtr()[j + 1] ||
+        A.innerIndexPtr()[begin] >= begin_of_row[static_cast<std::size_t>(j)];
   }
   const double rows = static_cast<double>(std::max<Eigen::Index>(A.rows(), 1));
   const double entries = static_cast<double>(std::max<Eigen::Index>(A.nonZeros(), 1));
   shape.entries_per_row = entries / rows;
-  shape.band_places = rows * (2.0 * static_cast<double>(width) + 1.0);
+  shape.band_places = rows * (2.0 * band_of(A).width() + 1.0);
   shape.band_per_entry = shape.band_places / entries;
   return shape;
 }

@@ -212,8 +212,7 @@ class Spqr final : public LinearSolver {
 
 std::unique_ptr<LinearSolver> make_spqr(const SolverOptions& options) {
   using enum Ordering;
-  suitesparse::refuse_other_orderings("spqr", options.ordering,
-                                      {kDefault, kNatural, kAmd, kColamd, kMetis});
+  refuse_other_orderings("spqr", options.ordering, {kDefault, kNatural, kAmd, kColamd, kMetis});
   return std::make_unique<Spqr>(options.ordering);
 }
 

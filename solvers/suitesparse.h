@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <initializer_list>
 #include <mutex>
-#include <string>
 #include <type_traits>
 #include <vector>
 
-#include "hbar/core/error.h"
 #include "hbar/solvers/solver_options.h"
 
 // What the solvers of SuiteSparse share. Its own headers stay in their .cpp.
@@ -58,18 +55,6 @@ template <typename Index>
 void narrow_indices(const Index* permutation, std::vector<int>& narrow) {
   std::transform(permutation, permutation + narrow.size(), narrow.begin(),
                  [](Index index) { return static_cast<int>(index); });
-}
-
-/// @param solver   its name
-/// @param offered  the orderings that it has, kDefault among them
-/// @throws InvalidInput naming the offered orderings if `ordering` is not among them
-inline void refuse_other_orderings(const char* solver, Ordering ordering,
-                                   std::initializer_list<Ordering> offered) {
-  if (std::find(offered.begin(), offered.end(), ordering) != offered.end()) return;
-  std::string names;
-  for (const Ordering known : offered) names += concat(names.empty() ? "" : ", ", name_of(known));
-  throw InvalidInput(concat(solver, ": the ordering \"", name_of(ordering),
-                            "\" is not offered; offered: ", names));
 }
 
 /// Held during an analysis that may call METIS, which seeds the process's one random generator and

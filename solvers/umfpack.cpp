@@ -164,8 +164,7 @@ class Umfpack final : public LinearSolver {
 
 std::unique_ptr<LinearSolver> make_umfpack(const SolverOptions& options) {
   using enum Ordering;
-  suitesparse::refuse_other_orderings("umfpack", options.ordering,
-                                      {kDefault, kNatural, kAmd, kColamd, kMetis});
+  refuse_other_orderings("umfpack", options.ordering, {kDefault, kNatural, kAmd, kColamd, kMetis});
   if (options.index_width == IndexWidth::k64) {
     return std::make_unique<Umfpack<WideIndex>>(options.ordering);
   }

@@ -60,18 +60,7 @@ TEST(Klu, FindsTheBlocksOfATriangularMatrixUnlessTheOrderIsGiven) {
 }
 
 TEST(Klu, NamesTheRowAndColumnOfASingularMatrixWithBothWidths) {
-  const SparseMatrix A = testing::nearly_identity(20, {{11, 12, 1.0}, {12, 11, 1.0}});
-  for (const Ordering ordering : kOrderingsOfKlu) {
-    for (const IndexWidth width : kWidths) {
-      const auto solver = make_klu(options_of(ordering, width));
-      solver->name_unknowns([](int index) { return concat("joint ", index); });
-      solver->analyze(A);
-      const std::string message = message_of<NumericalFailure>([&] { solver->factorize(A); });
-      EXPECT_TRUE(message.find("column 11 (joint 11) is 0") != std::string::npos ||
-                  message.find("column 12 (joint 12) is 0") != std::string::npos)
-          << message;
-    }
-  }
+  testing::expect_names_what_is_singular(make_klu, kOrderingsOfKlu);
 }
 
 TEST(Klu, GivesTheSameBitsInTwoThreads) {

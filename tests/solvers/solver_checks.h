@@ -238,4 +238,20 @@ inline void expect_serves_again_in_every_ordering(Maker make,
   }
 }
 
+/// Of a matrix whose rows 11 and 12 are equal it names one of the columns 11 and 12.
+inline void expect_names_what_is_singular(Maker make, std::initializer_list<Ordering> orderings) {
+  const SparseMatrix A = nearly_identity(20, {{11, 12, 1.0}, {12, 11, 1.0}});
+  for (const Ordering ordering : orderings) {
+    for (const IndexWidth width : kWidths) {
+      const auto solver = make(options_of(ordering, width));
+      solver->name_unknowns([](int index) { return concat("joint ", index); });
+      solver->analyze(A);
+      const std::string message = message_of<NumericalFailure>([&] { solver->factorize(A); });
+      EXPECT_TRUE(message.find("column 11 (joint 11) is 0") != std::string::npos ||
+                  message.find("column 12 (joint 12) is 0") != std::string::npos)
+          << message;
+    }
+  }
+}
+
 }  // namespace hbar::solvers::testing

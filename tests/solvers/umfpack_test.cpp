@@ -8,7 +8,6 @@
 namespace hbar::solvers {
 namespace {
 
-using testing::kWidths;
 using testing::message_of;
 using testing::options_of;
 using testing::random_sparse;
@@ -46,18 +45,7 @@ TEST(Umfpack, FillsLessByMinimumDegree) {
 }
 
 TEST(Umfpack, NamesTheRowAndColumnOfASingularMatrixWithBothWidths) {
-  const SparseMatrix A = testing::nearly_identity(20, {{11, 12, 1.0}, {12, 11, 1.0}});
-  for (const Ordering ordering : kOrderingsOfUmfpack) {
-    for (const IndexWidth width : kWidths) {
-      const auto solver = make_umfpack(options_of(ordering, width));
-      solver->name_unknowns([](int index) { return concat("joint ", index); });
-      solver->analyze(A);
-      const std::string message = message_of<NumericalFailure>([&] { solver->factorize(A); });
-      EXPECT_TRUE(message.find("column 11 (joint 11) is 0") != std::string::npos ||
-                  message.find("column 12 (joint 12) is 0") != std::string::npos)
-          << message;
-    }
-  }
+  testing::expect_names_what_is_singular(make_umfpack, kOrderingsOfUmfpack);
 }
 
 TEST(Umfpack, GivesTheSameBitsInTwoThreads) {
