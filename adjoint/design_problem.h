@@ -60,7 +60,7 @@ class DesignProblem final : public solvers::Nlp {
   [[nodiscard]] const solvers::NlpConstraints& constraint_limits() const override {
     return limits_;
   }
-  [[nodiscard]] const solvers::JacobianPattern& jacobian_pattern() const override {
+  [[nodiscard]] const solvers::SparsityPattern& jacobian_pattern() const override {
     return pattern_;
   }
   [[nodiscard]] double objective(const Eigen::VectorXd& x) override;
@@ -100,7 +100,7 @@ class DesignProblem final : public solvers::Nlp {
   int blocks_ = 0;
   solvers::NlpVariables variables_;
   solvers::NlpConstraints limits_;
-  solvers::JacobianPattern pattern_;
+  solvers::SparsityPattern pattern_;
   AdjointSweep adjoint_;
   TangentSweep tangent_;
   DesignProblemTimes times_;

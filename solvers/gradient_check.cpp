@@ -28,7 +28,7 @@ class Outputs {
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(x.size());
     nlp.objective_gradient(x, gradient);
     derivative_.row(0) = gradient.transpose();
-    const JacobianPattern& pattern = nlp.jacobian_pattern();
+    const SparsityPattern& pattern = nlp.jacobian_pattern();
     Eigen::VectorXd entries = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(pattern.rows.size()));
     if (value_.size() > 1) nlp.constraint_jacobian(x, entries);
     for (std::size_t k = 0; k < pattern.rows.size(); ++k) {

@@ -190,7 +190,7 @@ class Adapter final : public Ipopt::TNLP {
 
   const NlpVariables variables_;
   const NlpConstraints constraints_;
-  const JacobianPattern pattern_;
+  const SparsityPattern pattern_;
   const IpoptOptions& options_;
   NlpEvaluator evaluator_;
   Eigen::VectorXd scale_;

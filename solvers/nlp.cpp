@@ -59,6 +59,16 @@ void validate_variables(const NlpVariables& v) {
 
 }  // namespace
 
+const SparsityPattern& Nlp::hessian_pattern(HessianKind) {
+  throw InvalidInput(
+      "nlp: this program has no second derivatives; use the limited-memory Hessian");
+}
+
+void Nlp::lagrangian_hessian(const Eigen::VectorXd&, double, const Eigen::VectorXd&,
+                             HessianKind kind, Eigen::VectorXd&) {
+  static_cast<void>(hessian_pattern(kind));  // says so
+}
+
 void validate(const Nlp& nlp) {
   const NlpVariables& v = nlp.variables();
   validate_variables(v);
@@ -70,7 +80,7 @@ void validate(const Nlp& nlp) {
   for (Eigen::Index i = 0; i < m; ++i) {
     refuse_limits("constraint", i, c.names, c.lower[i], c.upper[i]);
   }
-  const JacobianPattern& pattern = nlp.jacobian_pattern();
+  const SparsityPattern& pattern = nlp.jacobian_pattern();
   refuse_size("columns of the Jacobian pattern", static_cast<Eigen::Index>(pattern.columns.size()),
               static_cast<Eigen::Index>(pattern.rows.size()));
   for (std::size_t k = 0; k < pattern.rows.size(); ++k) {

@@ -32,16 +32,23 @@ struct NlpConstraints {
   std::vector<std::string> names;  ///< for messages             [m]
 };
 
-/// Where dc/dx may be non-zero. Entries of one place are summed.
-struct JacobianPattern {
-  std::vector<int> rows;     ///< constraint of each entry, from 0  [entries]
-  std::vector<int> columns;  ///< variable of each entry, from 0    [entries]
+/// Where a matrix may be non-zero. Entries of one place are summed.
+struct SparsityPattern {
+  std::vector<int> rows;     ///< row of each entry, from 0: of dc/dx the constraint   [entries]
+  std::vector<int> columns;  ///< column of each entry, from 0: the variable           [entries]
+};
+
+/// How the Hessian of the Lagrangian L = σ f + λᵀ c is obtained.
+enum class HessianKind {
+  kExact,         ///< ∂²L/∂x²
+  kGaussNewton,   ///< what remains of it where residuals and curvature of c are left out
+  kLimitedMemory  ///< estimated by the optimiser from gradients; the program is not asked
 };
 
 /// A nonlinear program: minimise f(x) subject to lower ≤ x ≤ upper and lower ≤ c(x) ≤ upper.
 ///
-/// The three descriptions are constant while a program is being solved. The four evaluations may
-/// come at any x near the bounds and in any order; a program whose evaluations share work keeps
+/// The descriptions are constant while a program is being solved. The evaluations may come at any
+/// x near the bounds and in any order; a program whose evaluations share work keeps
 /// the last x. Each may throw EvaluationError, and nothing else that is to be survived.
 class Nlp {
  public:
@@ -52,7 +59,7 @@ class Nlp {
 
   [[nodiscard]] virtual const NlpVariables& variables() const = 0;
   [[nodiscard]] virtual const NlpConstraints& constraint_limits() const = 0;
-  [[nodiscard]] virtual const JacobianPattern& jacobian_pattern() const = 0;
+  [[nodiscard]] virtual const SparsityPattern& jacobian_pattern() const = 0;
 
   /// The objective f.
   ///
@@ -76,6 +83,25 @@ class Nlp {
   /// @param x       variables                    [n]
   /// @param values  output, sized by the caller  [entries]
   virtual void constraint_jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& values) = 0;
+
+  /// Where the Hessian of L = σ f + λᵀ c may be non-zero: places of its lower triangle
+  /// (row ≥ column) alone.
+  ///
+  /// @param kind  kExact or kGaussNewton
+  /// @throws InvalidInput if the program has no second derivatives of that kind, saying why (as
+  ///   this default does)
+  [[nodiscard]] virtual const SparsityPattern& hessian_pattern(HessianKind kind);
+
+  /// The entries of that Hessian in the order of hessian_pattern(kind).
+  ///
+  /// @param x       variables                     [n]
+  /// @param sigma   factor of the objective
+  /// @param lambda  multipliers of c              [m]
+  /// @param kind    kExact or kGaussNewton
+  /// @param values  output, sized by the caller   [entries]
+  virtual void lagrangian_hessian(const Eigen::VectorXd& x, double sigma,
+                                  const Eigen::VectorXd& lambda, HessianKind kind,
+                                  Eigen::VectorXd& values);
 };
 
 /// Refuses a program that does not describe itself consistently.

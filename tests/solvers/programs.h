@@ -35,11 +35,11 @@ class Program : public Nlp {
 
   [[nodiscard]] const NlpVariables& variables() const override { return variables_; }
   [[nodiscard]] const NlpConstraints& constraint_limits() const override { return limits_; }
-  [[nodiscard]] const JacobianPattern& jacobian_pattern() const override { return pattern_; }
+  [[nodiscard]] const SparsityPattern& jacobian_pattern() const override { return pattern_; }
 
   NlpVariables variables_;
   NlpConstraints limits_;
-  JacobianPattern pattern_;
+  SparsityPattern pattern_;
 };
 
 /// (1 − x₀)² + 100 (x₁ − x₀²)², least at (1, 1); hooks let a test disturb it.
