@@ -20,6 +20,10 @@ double number_at(const TrajectoryValues& values, const PartialPlace& place) {
       return values.qdot(place.index, place.step);
     case PartialPlace::Field::kV:
       return values.v(place.index, place.step);
+    case PartialPlace::Field::kTactile:
+      return values.tactile(place.index, place.step);
+    case PartialPlace::Field::kMeasured:
+      return values.measured(place.index, place.step);
     case PartialPlace::Field::kU:
       return values.u(place.index, place.step);
     case PartialPlace::Field::kP:
@@ -121,6 +125,8 @@ ConstraintTerm::ConstraintTerm(ConstraintRows rows, std::vector<PartialPlace> pl
     }
   }
 }
+
+void ConstraintTerm::second_partials(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>) const {}
 
 ConstraintPointer variable_at_step(const Model& model, const std::string& end_effector, int step,
                                    const Eigen::Vector3d& target, double half_width) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hbar/adjoint/simulator.h"
+#include "hbar/adjoint/value_place.h"
 
 namespace hbar {
 
@@ -16,17 +17,6 @@ struct ConstraintRows {
   Eigen::VectorXd upper;           ///< + infinity if there is no bound                   [rows]
 
   [[nodiscard]] Eigen::Index size() const { return lower.size(); }
-};
-
-/// One number of TrajectoryValues that a row reads.
-struct PartialPlace {
-  /// Members of TrajectoryValues.
-  enum class Field { kQ, kQdot, kV, kU, kP };
-
-  int row = 0;              ///< of its term
-  Field field = Field::kQ;  ///< which member
-  int step = 0;             ///< column of the member; not read for kP
-  int index = 0;            ///< row of the member
 };
 
 /// Constraints on a trajectory, with exact partials. Which numbers they read never changes.
@@ -44,6 +34,12 @@ class ConstraintTerm {
   /// Writes the partial of each place's row by its number, at fixed others.        [places]
   virtual void partials(const TrajectoryValues& values,
                         Eigen::Ref<Eigen::VectorXd> partials) const = 0;
+  /// By which pairs of numbers the rows have second partials; none for linear rows (this default).
+  /// @throws InvalidInput if the term has no second partials though its rows are not linear
+  [[nodiscard]] virtual std::vector<SecondPlace> second_places() const { return {}; }
+  /// Writes the second partial of each of second_places().                  [second places]
+  virtual void second_partials(const TrajectoryValues& values,
+                               Eigen::Ref<Eigen::VectorXd> second) const;
 
  protected:
   /// @throws InvalidInput if the rows' sizes differ, a lower bound exceeds an upper one, or a place

@@ -55,6 +55,12 @@ double taylor_slope(const DesignMap& map, const Eigen::VectorXd& d, const Eigen:
 
 }  // namespace
 
+Eigen::MatrixXd DesignMap::hessian(const Eigen::VectorXd&, const Eigen::VectorXd&) const {
+  throw InvalidInput(
+      "design map: it has no second derivatives; implement hessian(), or use the limited-memory "
+      "Hessian");
+}
+
 IdentityDesignMap::IdentityDesignMap(const ParameterSet& set)
     : variables_(identity_variables(set)) {}
 

@@ -45,6 +45,14 @@ class DesignMap {
   /// @param d  design variables                                                   [d]
   /// @returns  one column per design variable                               [parameters x d]
   [[nodiscard]] virtual Eigen::MatrixXd jacobian(const Eigen::VectorXd& d) const = 0;
+  /// Σ_i y_i ∂²p_i/∂d², which exact Hessians need.
+  ///
+  /// @param d  design variables                                                   [d]
+  /// @param y  weights                                                            [parameters]
+  /// @returns  symmetric                                                          [d x d]
+  /// @throws InvalidInput if the map has no second derivatives (as this default does)
+  [[nodiscard]] virtual Eigen::MatrixXd hessian(const Eigen::VectorXd& d,
+                                                const Eigen::VectorXd& y) const;
 };
 
 /// p itself, within the set's bounds.

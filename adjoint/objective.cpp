@@ -9,8 +9,20 @@ TrajectoryPartials::TrajectoryPartials(const TrajectoryValues& shape)
       qdot(Eigen::MatrixXd::Zero(shape.qdot.rows(), shape.qdot.cols())),
       v(Eigen::MatrixXd::Zero(shape.v.rows(), shape.v.cols())),
       tactile(Eigen::MatrixXd::Zero(shape.tactile.rows(), shape.tactile.cols())),
+      measured(Eigen::MatrixXd::Zero(shape.measured.rows(), shape.measured.cols())),
       u(Eigen::MatrixXd::Zero(shape.u.rows(), shape.u.cols())),
       p(Eigen::VectorXd::Zero(shape.p.size())) {}
+
+std::vector<SecondPlace> ObjectiveTerm::second_places(const TrajectoryValues&) const {
+  throw InvalidInput(concat("objective term '", name(),
+                            "' has no second partials; give them, or use the limited-memory "
+                            "Hessian"));
+}
+
+void ObjectiveTerm::second_partials(const TrajectoryValues& values,
+                                    Eigen::Ref<Eigen::VectorXd>) const {
+  static_cast<void>(second_places(values));  // says so
+}
 
 double Objective::value(const TrajectoryValues& values) const {
   double sum = 0.0;
@@ -29,7 +41,8 @@ TrajectoryPartials Objective::partials(const TrajectoryValues& values) const {
   for (const auto& term : terms_) {
     term->add_partials(values, sum);
     if (!sum.q.allFinite() || !sum.qdot.allFinite() || !sum.v.allFinite() ||
-        !sum.tactile.allFinite() || !sum.u.allFinite() || !sum.p.allFinite()) {
+        !sum.tactile.allFinite() || !sum.measured.allFinite() || !sum.u.allFinite() ||
+        !sum.p.allFinite()) {
       throw NumericalFailure(
           concat("objective term '", term->name(), "' gave a partial that is not finite"));
     }

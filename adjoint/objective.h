@@ -6,19 +6,22 @@
 #include <vector>
 
 #include "hbar/adjoint/simulator.h"
+#include "hbar/adjoint/value_place.h"
 
 namespace hbar {
 
-/// Partial derivatives ∂Ψ/∂(q̄, q̇̄, v̄, tactile, u, p) at fixed others, shaped like TrajectoryValues.
+/// Partial derivatives ∂Ψ/∂(q̄, q̇̄, v̄, tactile, measured, u, p) at fixed others, shaped like
+/// TrajectoryValues.
 struct TrajectoryPartials {
   explicit TrajectoryPartials(const TrajectoryValues& shape);
 
-  Eigen::MatrixXd q;        ///<                                             [dof x N+1]
-  Eigen::MatrixXd qdot;     ///<                                             [dof x N+1]
-  Eigen::MatrixXd v;        ///<                                             [variables x N+1]
-  Eigen::MatrixXd tactile;  ///<                                          [readings x N+1]
-  Eigen::MatrixXd u;        ///<                                             [controls x N]
-  Eigen::VectorXd p;        ///<                                             [parameters]
+  Eigen::MatrixXd q;         ///<                                             [dof x N+1]
+  Eigen::MatrixXd qdot;      ///<                                             [dof x N+1]
+  Eigen::MatrixXd v;         ///<                                             [variables x N+1]
+  Eigen::MatrixXd tactile;   ///<                                         [readings x N+1]
+  Eigen::MatrixXd measured;  ///<                                         [measured x N+1]
+  Eigen::MatrixXd u;         ///<                                             [controls x N]
+  Eigen::VectorXd p;         ///<                                             [parameters]
 };
 
 /// One summand of an objective Ψ(p, q̄, v̄) (15).
@@ -34,6 +37,14 @@ class ObjectiveTerm {
   [[nodiscard]] virtual double value(const TrajectoryValues& values) const = 0;
   /// Adds the term's partials to `partials`.
   virtual void add_partials(const TrajectoryValues& values, TrajectoryPartials& partials) const = 0;
+  /// By which pairs of numbers the term has second partials (`row` is 0).
+  ///
+  /// @param shape  sized as the values will be
+  /// @throws InvalidInput if the term has no second partials (as this default does)
+  [[nodiscard]] virtual std::vector<SecondPlace> second_places(const TrajectoryValues& shape) const;
+  /// Writes the second partial of each of second_places(values).            [second places]
+  virtual void second_partials(const TrajectoryValues& values,
+                               Eigen::Ref<Eigen::VectorXd> second) const;
 };
 
 /// A sum of terms.

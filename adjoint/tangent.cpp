@@ -148,6 +148,7 @@ Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directio
   out.v.resize((steps + 1) * model.variable_count(), directions.count());
   const int readings = model.tactile_count();
   out.tactile.resize((steps + 1) * readings, directions.count());
+  out.measured.resize(0, directions.count());
   TactileTangent tactile(simulator_, trajectory.inputs,
                          readings > 0 ? directions.p : Eigen::MatrixXd());
   VariableTangent variables(simulator_);
@@ -174,6 +175,7 @@ double directional_derivative(const TrajectoryPartials& partials, const Tangents
          partials.qdot.reshaped().dot(tangents.qdot.col(i)) +
          partials.v.reshaped().dot(tangents.v.col(i)) +
          partials.tactile.reshaped().dot(tangents.tactile.col(i)) +
+         partials.measured.reshaped().dot(tangents.measured.col(i)) +
          partials.u.reshaped().dot(directions.u.col(i)) + partials.p.dot(directions.p.col(i));
 }
 

@@ -19,10 +19,11 @@ struct Directions {
 
 /// How the trajectory moves along directions: column by column, time step by time step.
 struct Tangents {
-  Eigen::MatrixXd q;        ///< rows k·dof … are step k's               [dof·(N+1) x count]
-  Eigen::MatrixXd qdot;     ///<                                         [dof·(N+1) x count]
-  Eigen::MatrixXd v;        ///< auxiliary variables                     [variables·(N+1) x count]
-  Eigen::MatrixXd tactile;  ///< sensor readings                      [readings·(N+1) x count]
+  Eigen::MatrixXd q;         ///< rows k·dof … are step k's               [dof·(N+1) x count]
+  Eigen::MatrixXd qdot;      ///<                                         [dof·(N+1) x count]
+  Eigen::MatrixXd v;         ///< auxiliary variables                     [variables·(N+1) x count]
+  Eigen::MatrixXd tactile;   ///< sensor readings                     [readings·(N+1) x count]
+  Eigen::MatrixXd measured;  ///< measurements                        [measured·(N+1) x count]
 };
 
 /// Forward sensitivities H̄ δq̄ = −(∂ḡ/∂p) δp − … by the matrices of Linearizer and any solver.

@@ -60,8 +60,7 @@ void validate_variables(const NlpVariables& v) {
 }  // namespace
 
 const SparsityPattern& Nlp::hessian_pattern(HessianKind) {
-  throw InvalidInput(
-      "nlp: this program has no second derivatives; use the limited-memory Hessian");
+  throw InvalidInput("nlp: this program has no second derivatives; use the limited-memory Hessian");
 }
 
 void Nlp::lagrangian_hessian(const Eigen::VectorXd&, double, const Eigen::VectorXd&,
