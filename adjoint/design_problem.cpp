@@ -52,6 +52,10 @@ Eigen::RowVectorXd tangent_of(const PartialPlace& place, const Tangents& tangent
       return tangents.qdot.row(place.step * values.qdot.rows() + place.index);
     case Field::kV:
       return tangents.v.row(place.step * values.v.rows() + place.index);
+    case Field::kTactile:
+      return tangents.tactile.row(place.step * values.tactile.rows() + place.index);
+    case Field::kMeasured:
+      return tangents.measured.row(place.step * values.measured.rows() + place.index);
     case Field::kU:
       return directions.u.row(place.step * values.u.rows() + place.index);
     case Field::kP:
@@ -134,6 +138,8 @@ std::pair<int, int> DesignProblem::blocks_of(const PartialPlace& place) const {
       return {0, 0};
     case Field::kU:
       return {place.step / hold, place.step / hold + 1};
+    case Field::kMeasured:  // at step 0 with the first control
+      return {0, (std::max(place.step, 1) + hold - 1) / hold};
     default:
       return {0, (place.step + hold - 1) / hold};
   }
@@ -146,6 +152,10 @@ void DesignProblem::check_place(const ConstraintTerm& term, const PartialPlace& 
   int columns = steps + 1;
   if (place.field == Field::kV) {
     size = model.variable_count();
+  } else if (place.field == Field::kTactile) {
+    size = model.tactile_count();
+  } else if (place.field == Field::kMeasured) {
+    size = parts_.simulator.measured_count();
   } else if (place.field == Field::kU) {
     size = model.control_count();
     columns = steps;

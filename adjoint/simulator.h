@@ -102,6 +102,8 @@ class Simulator {
   [[nodiscard]] const std::shared_ptr<const Model>& shared_model() const { return model_; }
   [[nodiscard]] const ParameterSet& parameters() const { return parameters_; }
   [[nodiscard]] const SimulationOptions& options() const { return options_; }
+  /// Rows of TrajectoryValues::measured.
+  [[nodiscard]] int measured_count() const { return 0; }
 
  private:
   class StageSystem;
