@@ -47,50 +47,55 @@ void History::switched_nodes(const Trajectory& trajectory, int earlier, int stag
                     [&](int, int node) { nodes.push_back(node); });
 }
 
-void History::gather(const Trajectory& trajectory, int stage, Eigen::VectorXd& qdot_past,
-                     Eigen::VectorXd& a_past, StepStart<double>& start) const {
+template <Scalar S>
+void History::gather(const Trajectory& trajectory, const MatrixX<S>& q, const MatrixX<S>& qdot,
+                     int stage, VectorX<S>& qdot_past, VectorX<S>& a_past,
+                     StepStart<S>& start) const {
   const Stage& row = trajectory.timeline.stage(stage);
   qdot_past.setZero();
   a_past.setZero();
   for (int i = 0; i < row.history_size; ++i) {
     const auto [j, weight] = row.history[static_cast<std::size_t>(i)];
-    qdot_past += weight * trajectory.q.col(j);
-    a_past += weight * trajectory.qdot.col(j);
+    qdot_past += weight * q.col(j);
+    a_past += weight * qdot.col(j);
     for_each_switched(model_, trajectory, j, stage, [&, j = j, weight = weight](int c, int) {
-      const Vector3d r = trajectory.q.col(j).segment<3>(c);
-      const Vector3d rate = trajectory.qdot.col(j).segment<3>(c);
-      qdot_past.segment<3>(c) += weight * (change_chart(r) - r);
-      a_past.segment<3>(c) += weight * (chart_derivative(r) * rate - rate);
+      const Vector3<S> r = q.col(j).template segment<3>(c);
+      const Vector3<S> rate = qdot.col(j).template segment<3>(c);
+      qdot_past.template segment<3>(c) += weight * (change_chart<S>(r) - r);
+      a_past.template segment<3>(c) += weight * (chart_derivative<S>(r) * rate - rate);
     });
   }
-  start.q = trajectory.q.col(row.start);
-  start.qdot = trajectory.qdot.col(row.start);
+  start.q = q.col(row.start);
+  start.qdot = qdot.col(row.start);
   for_each_switched(model_, trajectory, row.start, stage, [&](int c, int) {
-    const Vector3d r = start.q.segment<3>(c);
-    start.q.segment<3>(c) = change_chart(r);
-    start.qdot.segment<3>(c) = chart_derivative(r) * start.qdot.segment<3>(c).eval();
+    const Vector3<S> r = start.q.template segment<3>(c);
+    start.q.template segment<3>(c) = change_chart<S>(r);
+    start.qdot.template segment<3>(c) =
+        chart_derivative<S>(r) * start.qdot.template segment<3>(c).eval();
   });
 }
 
-void History::scatter(const Trajectory& trajectory, int stage, const Eigen::VectorXd& y_qdot,
-                      const Eigen::VectorXd& y_a, const StepStart<double>& y_start,
-                      Eigen::MatrixXd& q_bar, Eigen::MatrixXd& qdot_bar) const {
+template <Scalar S>
+void History::scatter(const Trajectory& trajectory, const MatrixX<S>& q, const MatrixX<S>& qdot,
+                      int stage, const VectorX<S>& y_qdot, const VectorX<S>& y_a,
+                      const StepStart<S>& y_start, MatrixX<S>& q_bar, MatrixX<S>& qdot_bar) const {
   const Stage& row = trajectory.timeline.stage(stage);
   // Weights (y_position, y_rate) on a state seen from this stage become weights on the state
   // itself: identity, corrected for nodes that changed chart.
-  const auto pass_back = [&](int j, double weight, const Eigen::VectorXd& y_position,
-                             const Eigen::VectorXd& y_rate) {
+  const auto pass_back = [&](int j, double weight, const VectorX<S>& y_position,
+                             const VectorX<S>& y_rate) {
     q_bar.col(j) += weight * y_position;
     qdot_bar.col(j) += weight * y_rate;
     for_each_switched(model_, trajectory, j, stage, [&](int c, int) {
-      const Vector3d r = trajectory.q.col(j).segment<3>(c);
-      const Vector3d rate = trajectory.qdot.col(j).segment<3>(c);
-      const Matrix3d D = chart_derivative(r);
-      const Vector3d y_r = y_position.segment<3>(c);
-      const Vector3d y_v = y_rate.segment<3>(c);
-      q_bar.col(j).segment<3>(c) +=
-          weight * (D.transpose() * y_r - y_r + chart_second_derivative(r, rate).transpose() * y_v);
-      qdot_bar.col(j).segment<3>(c) += weight * (D.transpose() * y_v - y_v);
+      const Vector3<S> r = q.col(j).template segment<3>(c);
+      const Vector3<S> rate = qdot.col(j).template segment<3>(c);
+      const Matrix3<S> D = chart_derivative<S>(r);
+      const Vector3<S> y_r = y_position.template segment<3>(c);
+      const Vector3<S> y_v = y_rate.template segment<3>(c);
+      q_bar.col(j).template segment<3>(c) +=
+          weight *
+          (D.transpose() * y_r - y_r + chart_second_derivative<S>(r, rate).transpose() * y_v);
+      qdot_bar.col(j).template segment<3>(c) += weight * (D.transpose() * y_v - y_v);
     });
   };
   for (int i = 0; i < row.history_size; ++i) {
@@ -99,5 +104,16 @@ void History::scatter(const Trajectory& trajectory, int stage, const Eigen::Vect
   }
   pass_back(row.start, 1.0, y_start.q, y_start.qdot);
 }
+
+template void History::gather(const Trajectory&, const MatrixX<double>&, const MatrixX<double>&,
+                              int, VectorX<double>&, VectorX<double>&, StepStart<double>&) const;
+template void History::gather(const Trajectory&, const MatrixX<Dual>&, const MatrixX<Dual>&, int,
+                              VectorX<Dual>&, VectorX<Dual>&, StepStart<Dual>&) const;
+template void History::scatter(const Trajectory&, const MatrixX<double>&, const MatrixX<double>&,
+                               int, const VectorX<double>&, const VectorX<double>&,
+                               const StepStart<double>&, MatrixX<double>&, MatrixX<double>&) const;
+template void History::scatter(const Trajectory&, const MatrixX<Dual>&, const MatrixX<Dual>&, int,
+                               const VectorX<Dual>&, const VectorX<Dual>&, const StepStart<Dual>&,
+                               MatrixX<Dual>&, MatrixX<Dual>&) const;
 
 }  // namespace hbar

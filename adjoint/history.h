@@ -22,11 +22,21 @@ class History {
   /// @param qdot_past  Σ weight q_j                                              [dof]
   /// @param a_past     Σ weight q̇_j                                              [dof]
   void gather(const Trajectory& trajectory, int stage, Eigen::VectorXd& qdot_past,
-              Eigen::VectorXd& a_past, StepStart<double>& start) const;
+              Eigen::VectorXd& a_past, StepStart<double>& start) const {
+    gather<double>(trajectory, trajectory.q, trajectory.qdot, stage, qdot_past, a_past, start);
+  }
+  /// The same from coordinates and rates that are not the trajectory's own: dual numbers for its
+  /// tangent.
+  ///
+  /// @param q, qdot  per stage                                        [dof x stages]
+  template <Scalar S>
+  void gather(const Trajectory& trajectory, const MatrixX<S>& q, const MatrixX<S>& qdot, int stage,
+              VectorX<S>& qdot_past, VectorX<S>& a_past, StepStart<S>& start) const;
 
   /// q̇ and q̈ of a point whose q is set: q̇ = rate q + qdot_past, q̈ = rate q̇ + a_past.
-  static void set_rates(const Eigen::VectorXd& qdot_past, const Eigen::VectorXd& a_past,
-                        StagePoint<double>& point) {
+  template <Scalar S>
+  static void set_rates(const VectorX<S>& qdot_past, const VectorX<S>& a_past,
+                        StagePoint<S>& point) {
     point.qdot = point.rate * point.q + qdot_past;
     point.a = point.rate * point.qdot + a_past;
   }
@@ -38,7 +48,14 @@ class History {
   /// @param q_bar, qdot_bar   weights per stage, added to             [dof x stages]
   void scatter(const Trajectory& trajectory, int stage, const Eigen::VectorXd& y_qdot,
                const Eigen::VectorXd& y_a, const StepStart<double>& y_start, Eigen::MatrixXd& q_bar,
-               Eigen::MatrixXd& qdot_bar) const;
+               Eigen::MatrixXd& qdot_bar) const {
+    scatter<double>(trajectory, trajectory.q, trajectory.qdot, stage, y_qdot, y_a, y_start, q_bar,
+                    qdot_bar);
+  }
+  template <Scalar S>
+  void scatter(const Trajectory& trajectory, const MatrixX<S>& q, const MatrixX<S>& qdot, int stage,
+               const VectorX<S>& y_qdot, const VectorX<S>& y_a, const StepStart<S>& y_start,
+               MatrixX<S>& q_bar, MatrixX<S>& qdot_bar) const;
 
  private:
   const Model& model_;
