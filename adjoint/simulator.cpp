@@ -130,6 +130,12 @@ void Simulator::check_options() const {
   if (options_.steps < 1) {
     throw InvalidInput(concat("steps is ", options_.steps, "; it must be at least 1"));
   }
+  for (const int step : options_.restarts) {
+    if (step < 0 || step >= options_.steps) {
+      throw InvalidInput(
+          concat("restart at step ", step, "; there are steps 0 to ", options_.steps - 1));
+    }
+  }
   const double bytes = options_.steps * bytes_per_stage(false);
   if (bytes > options_.max_memory) {
     throw InvalidInput(concat(options_.steps, " steps of ", model_->dof(),
@@ -300,7 +306,8 @@ Rollout Simulator::rollout(const Inputs& inputs) {
   apply_parameters<double>(*model_, parameters_, inputs.p, work_->mechanism);
   const auto stages =
       static_cast<Eigen::Index>(integrator_->stages.size()) * options_.steps +
-      static_cast<Eigen::Index>(find_integrator(integrator_->starter).stages.size());
+      static_cast<Eigen::Index>((options_.restarts.size() + 1) *
+                                find_integrator(integrator_->starter).stages.size());
   Trajectory trajectory;
   trajectory.inputs = inputs;
   trajectory.q.resize(model_->dof(), stages + 1);
@@ -318,6 +325,10 @@ Rollout Simulator::rollout(const Inputs& inputs) {
       report.message =
           concat("simulation interrupted after ", step, " of ", options_.steps, " steps");
       break;
+    }
+    if (std::find(options_.restarts.begin(), options_.restarts.end(), step) !=
+        options_.restarts.end()) {
+      trajectory.timeline.restart();
     }
     if (!advance(trajectory, step, options_.h, 0, report)) {
       trajectory.timeline.truncate(trajectory.timeline.step_end(step) + 1);

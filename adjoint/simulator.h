@@ -16,6 +16,9 @@ struct SimulationOptions {
   std::string integrator = "bdf1";  ///< a name of integrators()
   double h = 0.02;                  ///< time step, time
   int steps = 100;                  ///< N
+  /// Steps at whose beginning a multistep method starts anew, as after an event; 0 … N − 1. BDF2
+  /// then takes a step of SDIRK2 there.
+  std::vector<int> restarts = {};
   solvers::NewtonOptions newton = {};
   int max_halvings = 10;                    ///< of a step that does not converge; each is recorded
   bool keep_factors = true;                 ///< for the adjoint; dropped if they exceed max_memory

@@ -1,5 +1,7 @@
 #include "hbar/adjoint/timeline.h"
 
+#include <algorithm>
+
 namespace hbar {
 
 Timeline::Timeline() : stages_(1), step_ends_{0}, ends_{{0, 0.0}} {}
@@ -40,6 +42,19 @@ void Timeline::truncate(int stages) {
   while (step_ends_.back() >= stages) {
     step_ends_.pop_back();
   }
+}
+
+Timeline even_timeline(const Integrator& integrator, double h, int steps,
+                       const std::vector<int>& restarts) {
+  Timeline out;
+  for (int step = 0; step < steps; ++step) {
+    if (std::find(restarts.begin(), restarts.end(), step) != restarts.end()) {
+      out.restart();
+    }
+    out.append(integrator, step, h);
+    out.end_step();
+  }
+  return out;
 }
 
 }  // namespace hbar

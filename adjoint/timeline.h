@@ -42,6 +42,9 @@ class Timeline {
   /// @param step  index of the step whose controls act
   void append(const Integrator& integrator, int step, double h);
 
+  /// Makes the next step begin anew, as after an event: it looks back no further than its start.
+  void restart() { ends_.back().h = 0.0; }
+
   /// Marks the last stage as the end of its step.
   void end_step() { step_ends_.push_back(last_stage()); }
 
@@ -71,5 +74,11 @@ class Timeline {
   std::vector<int> step_ends_;
   std::vector<End> ends_;
 };
+
+/// The stages of `steps` steps of size h, none of them halved.
+///
+/// @param restarts  steps that begin anew
+[[nodiscard]] Timeline even_timeline(const Integrator& integrator, double h, int steps,
+                                     const std::vector<int>& restarts = {});
 
 }  // namespace hbar
