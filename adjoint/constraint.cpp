@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hbar/adjoint/value_access.h"
 #include "hbar/core/error.h"
 #include "hbar/core/nearest_name.h"
 
@@ -12,36 +13,20 @@ namespace {
 
 using Write = std::function<void(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>)>;
 
-double number_at(const TrajectoryValues& values, const PartialPlace& place) {
-  switch (place.field) {
-    case PartialPlace::Field::kQ:
-      return values.q(place.index, place.step);
-    case PartialPlace::Field::kQdot:
-      return values.qdot(place.index, place.step);
-    case PartialPlace::Field::kV:
-      return values.v(place.index, place.step);
-    case PartialPlace::Field::kTactile:
-      return values.tactile(place.index, place.step);
-    case PartialPlace::Field::kMeasured:
-      return values.measured(place.index, place.step);
-    case PartialPlace::Field::kU:
-      return values.u(place.index, place.step);
-    case PartialPlace::Field::kP:
-      break;
-  }
-  return values.p[place.index];
-}
-
-/// c_row = Σ weight · number over the row's places.
+/// c_row = constant_row + Σ weight · number over the row's places.
 class LinearTerm final : public ConstraintTerm {
  public:
-  LinearTerm(ConstraintRows rows, std::vector<PartialPlace> places, Eigen::VectorXd weights)
-      : ConstraintTerm(std::move(rows), std::move(places)), weights_(std::move(weights)) {}
+  LinearTerm(ConstraintRows rows, std::vector<PartialPlace> places, Eigen::VectorXd weights,
+             Eigen::VectorXd constants)
+      : ConstraintTerm(std::move(rows), std::move(places)),
+        weights_(std::move(weights)),
+        constants_(std::move(constants)) {}
 
   void values(const TrajectoryValues& values, Eigen::Ref<Eigen::VectorXd> c) const override {
-    c.setZero();
+    c = constants_;
     for (std::size_t k = 0; k < places().size(); ++k) {
-      c[places()[k].row] += weights_[static_cast<Eigen::Index>(k)] * number_at(values, places()[k]);
+      c[places()[k].row] +=
+          weights_[static_cast<Eigen::Index>(k)] * value_at(values, places()[k].place());
     }
   }
   void partials(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd> partials) const override {
@@ -50,6 +35,7 @@ class LinearTerm final : public ConstraintTerm {
 
  private:
   Eigen::VectorXd weights_;
+  Eigen::VectorXd constants_;
 };
 
 /// A term whose row i is the number at place i.
@@ -59,17 +45,17 @@ ConstraintPointer numbers_within(std::vector<std::string> names, std::vector<Par
   const auto count = static_cast<Eigen::Index>(places.size());
   ConstraintRows rows{std::move(names), Eigen::Map<const Eigen::VectorXd>(lower.data(), count),
                       Eigen::Map<const Eigen::VectorXd>(upper.data(), count)};
-  return std::make_shared<LinearTerm>(std::move(rows), std::move(places),
-                                      Eigen::VectorXd::Ones(count));
+  return linear_constraint(std::move(rows), std::move(places), Eigen::VectorXd::Ones(count));
 }
 
 class FunctionConstraint final : public ConstraintTerm {
  public:
   FunctionConstraint(ConstraintRows rows, std::vector<PartialPlace> places, Write values,
-                     Write partials)
+                     Write partials, std::optional<RowSecondPartials> second)
       : ConstraintTerm(std::move(rows), std::move(places)),
         values_(std::move(values)),
-        partials_(std::move(partials)) {}
+        partials_(std::move(partials)),
+        second_(std::move(second)) {}
 
   void values(const TrajectoryValues& values, Eigen::Ref<Eigen::VectorXd> c) const override {
     values_(values, c);
@@ -78,28 +64,32 @@ class FunctionConstraint final : public ConstraintTerm {
                 Eigen::Ref<Eigen::VectorXd> partials) const override {
     partials_(values, partials);
   }
+  [[nodiscard]] std::vector<SecondPlace> second_places() const override {
+    if (!second_) {
+      throw InvalidInput(concat("constraint '", rows().names.empty() ? "" : rows().names.front(),
+                                "' has no second partials; give user_constraint its second places "
+                                "and partials (or say that the rows are linear), write it as a "
+                                "generic_constraint, or use the limited-memory Hessian"));
+    }
+    return second_->places;
+  }
+  void second_partials(const TrajectoryValues& values,
+                       Eigen::Ref<Eigen::VectorXd> second) const override {
+    if (!second_places().empty()) {
+      second_->partials(values, second);
+    }
+  }
 
  private:
   Write values_;
   Write partials_;
+  std::optional<RowSecondPartials> second_;
 };
 
 void require_step(const char* term, int step) {
   if (step < 0) {
     throw InvalidInput(concat(term, ": step is ", step, "; it must be ≥ 0"));
   }
-}
-
-int find_end_effector(const Model& model, const std::string& name) {
-  std::vector<std::string> known;
-  for (std::size_t i = 0; i < model.end_effectors().size(); ++i) {
-    if (model.end_effectors()[i].name == name) {
-      return static_cast<int>(i);
-    }
-    known.push_back(model.end_effectors()[i].name);
-  }
-  throw InvalidInput(concat("variable_at_step: the model has no end effector '", name, "'; ",
-                            unknown_name_hint(name, known)));
 }
 
 }  // namespace
@@ -128,6 +118,18 @@ ConstraintTerm::ConstraintTerm(ConstraintRows rows, std::vector<PartialPlace> pl
 
 void ConstraintTerm::second_partials(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>) const {}
 
+int first_variable(const Model& model, const std::string& end_effector, const std::string& who) {
+  std::vector<std::string> known;
+  for (const EndEffector& candidate : model.end_effectors()) {
+    if (candidate.name == end_effector) {
+      return 3 * static_cast<int>(known.size());
+    }
+    known.push_back(candidate.name);
+  }
+  throw InvalidInput(concat(who, ": the model has no end effector '", end_effector, "'; ",
+                            unknown_name_hint(end_effector, known)));
+}
+
 ConstraintPointer variable_at_step(const Model& model, const std::string& end_effector, int step,
                                    const Eigen::Vector3d& target, double half_width) {
   require_step("variable_at_step", step);
@@ -136,7 +138,7 @@ ConstraintPointer variable_at_step(const Model& model, const std::string& end_ef
                               "; the target must be finite and the half width ≥ 0"));
   }
   constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
-  const int first = 3 * find_end_effector(model, end_effector);
+  const int first = first_variable(model, end_effector, "variable_at_step");
   std::vector<std::string> names;
   std::vector<PartialPlace> places;
   std::vector<double> lower;
@@ -210,15 +212,40 @@ ConstraintPointer parameter_sum(const ParameterSet& set, const std::string& name
   }
   ConstraintRows rows{
       {name}, Eigen::VectorXd::Constant(1, lower), Eigen::VectorXd::Constant(1, upper)};
-  return std::make_shared<LinearTerm>(
+  return linear_constraint(
       std::move(rows), std::move(places),
       weights.size() > 0 ? weights : Eigen::VectorXd(Eigen::VectorXd::Ones(count)));
 }
 
+ConstraintPointer linear_constraint(ConstraintRows rows, std::vector<PartialPlace> places,
+                                    Eigen::VectorXd weights, Eigen::VectorXd constants) {
+  if (constants.size() == 0) {
+    constants = Eigen::VectorXd::Zero(rows.size());
+  }
+  if (weights.size() != static_cast<Eigen::Index>(places.size()) ||
+      constants.size() != rows.size() || !weights.allFinite() || !constants.allFinite()) {
+    throw InvalidInput(concat("linear_constraint: ", rows.size(), " rows with ", constants.size(),
+                              " constants, and ", places.size(), " places with ", weights.size(),
+                              " weights; there must be as many of each, and all finite"));
+  }
+  return std::make_shared<LinearTerm>(std::move(rows), std::move(places), std::move(weights),
+                                      std::move(constants));
+}
+
 ConstraintPointer user_constraint(ConstraintRows rows, std::vector<PartialPlace> places,
-                                  Write values, Write partials) {
+                                  Write values, Write partials,
+                                  std::optional<RowSecondPartials> second) {
+  if (second && !second->places.empty() && !second->partials) {
+    throw InvalidInput("user_constraint: there are second places but no function for them");
+  }
+  for (const SecondPlace& place : second ? second->places : std::vector<SecondPlace>()) {
+    if (place.row < 0 || place.row >= rows.size()) {
+      throw InvalidInput(concat("user_constraint: a second place names row ", place.row,
+                                "; there are ", rows.size(), " rows"));
+    }
+  }
   return std::make_shared<FunctionConstraint>(std::move(rows), std::move(places), std::move(values),
-                                              std::move(partials));
+                                              std::move(partials), std::move(second));
 }
 
 }  // namespace hbar

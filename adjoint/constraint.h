@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,13 @@ class ConstraintTerm {
 
 using ConstraintPointer = std::shared_ptr<const ConstraintTerm>;
 
+/// Where the x of an end effector's position stands among the auxiliary variables; y and z follow.
+///
+/// @param who  asks, for the message
+/// @throws InvalidInput naming the nearest end effector if the model has no such one
+[[nodiscard]] int first_variable(const Model& model, const std::string& end_effector,
+                                 const std::string& who);
+
 /// The position of an end effector at the end of a step: target − half_width ≤ v ≤ target +
 /// half_width for each of x, y, z. A half width of 0 makes three equations.
 ///
@@ -94,14 +102,39 @@ using ConstraintPointer = std::shared_ptr<const ConstraintTerm>;
                                               double upper,
                                               const Eigen::VectorXd& weights = Eigen::VectorXd());
 
-/// Rows of one's own.
+/// Linear rows, c_row = constant_row + Σ weight · number over the row's places.
+///
+/// @param places     each at most once per row
+/// @param weights    one per place                                                  [places]
+/// @param constants  empty: zeros                                                     [rows]
+/// @throws InvalidInput if the sizes differ, or a weight or constant is not finite
+[[nodiscard]] ConstraintPointer linear_constraint(ConstraintRows rows,
+                                                  std::vector<PartialPlace> places,
+                                                  Eigen::VectorXd weights,
+                                                  Eigen::VectorXd constants = Eigen::VectorXd());
+
+/// Which second partials rows of one's own have, and what writes them.
+struct RowSecondPartials {
+  std::vector<SecondPlace> places;
+  /// As ConstraintTerm::second_partials; not called if there are no places
+  std::function<void(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>)> partials;
+
+  /// Rows that are linear have none.
+  [[nodiscard]] static RowSecondPartials of_linear_rows() { return {}; }
+};
+
+/// Rows of one's own (check_constraint_term tells whether values and partials agree).
+/// generic_constraint needs the formula alone.
 ///
 /// @param places    what the rows read
 /// @param values    writes c                                                          [rows]
 /// @param partials  writes the partial of each place                                [places]
+/// @param second    for exact Hessians; without it second_places() throws InvalidInput
+/// @throws InvalidInput if a second place is of no row, or has no function that writes it
 [[nodiscard]] ConstraintPointer user_constraint(
     ConstraintRows rows, std::vector<PartialPlace> places,
     std::function<void(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>)> values,
-    std::function<void(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>)> partials);
+    std::function<void(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>)> partials,
+    std::optional<RowSecondPartials> second = std::nullopt);
 
 }  // namespace hbar

@@ -50,4 +50,28 @@ TrajectoryPartials Objective::partials(const TrajectoryValues& values) const {
   return sum;
 }
 
+std::vector<SecondPlace> Objective::second_places(const TrajectoryValues& shape) const {
+  std::vector<SecondPlace> all;
+  for (const auto& term : terms_) {
+    const std::vector<SecondPlace> places = term->second_places(shape);
+    all.insert(all.end(), places.begin(), places.end());
+  }
+  return all;
+}
+
+Eigen::VectorXd Objective::second_partials(const TrajectoryValues& values) const {
+  Eigen::VectorXd all;
+  for (const auto& term : terms_) {
+    const Eigen::Index first = all.size();
+    const auto count = static_cast<Eigen::Index>(term->second_places(values).size());
+    all.conservativeResize(first + count);
+    term->second_partials(values, all.tail(count));
+    if (!all.tail(count).allFinite()) {
+      throw NumericalFailure(
+          concat("objective term '", term->name(), "' gave a second partial that is not finite"));
+    }
+  }
+  return all;
+}
+
 }  // namespace hbar

@@ -59,6 +59,15 @@ class Objective {
   }
   [[nodiscard]] double value(const TrajectoryValues& values) const;
   [[nodiscard]] TrajectoryPartials partials(const TrajectoryValues& values) const;
+  /// The second places of all terms, term by term: a pair may be there once per term, and what it
+  /// has there adds up.
+  ///
+  /// @param shape  sized as the values will be
+  /// @throws InvalidInput naming the term that has no second partials
+  [[nodiscard]] std::vector<SecondPlace> second_places(const TrajectoryValues& shape) const;
+  /// The second partial of each of second_places(values).                   [second places]
+  /// @throws NumericalFailure naming the term whose second partial is not finite
+  [[nodiscard]] Eigen::VectorXd second_partials(const TrajectoryValues& values) const;
   [[nodiscard]] const std::vector<std::shared_ptr<const ObjectiveTerm>>& terms() const {
     return terms_;
   }

@@ -66,6 +66,21 @@ struct Dual {
   return {std::cos(a.value), -a.slope * std::sin(a.value)};
 }
 [[nodiscard]] inline Dual abs(const Dual& a) { return a.value < 0.0 ? -a : a; }
+[[nodiscard]] inline Dual exp(const Dual& a) {
+  const double power = std::exp(a.value);
+  return {power, a.slope * power};
+}
+[[nodiscard]] inline Dual log(const Dual& a) { return {std::log(a.value), a.slope / a.value}; }
+[[nodiscard]] inline Dual pow(const Dual& a, double n) {
+  // x⁰ has no slope at x = 0 either, where 0 · x⁻¹ would not say so.
+  return {std::pow(a.value, n), n == 0.0 ? 0.0 : a.slope * n * std::pow(a.value, n - 1.0)};
+}
+/// a > 0.
+[[nodiscard]] inline Dual pow(const Dual& a, const Dual& b) { return exp(b * log(a)); }
+[[nodiscard]] inline Dual atan2(const Dual& y, const Dual& x) {
+  const double square = x.value * x.value + y.value * y.value;
+  return {std::atan2(y.value, x.value), (x.value * y.slope - y.value * x.slope) / square};
+}
 
 /// The value of a scalar, without its derivative.
 [[nodiscard]] constexpr double value_of(double a) { return a; }
