@@ -62,7 +62,7 @@ endforeach()
 
 # An optional part has an export set of its own: who does without it needs none of its dependencies.
 # One that uses another comes after it.
-set(HBAR_OPTIONAL_COMPONENTS umfpack ipopt suite)
+set(HBAR_OPTIONAL_COMPONENTS umfpack ipopt nlopt suite)
 
 # hbar_leave_out(NAMES...): what this build goes without. Headers NAME.h are not installed, tests
 # NAME*_test.cpp not compiled.

@@ -31,4 +31,5 @@ install(FILES ${PROJECT_BINARY_DIR}/hbarConfig.cmake ${PROJECT_BINARY_DIR}/hbarC
         ${PROJECT_SOURCE_DIR}/cmake/FindSuiteSparse.cmake
         ${PROJECT_SOURCE_DIR}/cmake/FindHbarIpopt.cmake
         ${PROJECT_SOURCE_DIR}/cmake/FindHbarMumps.cmake
+        ${PROJECT_SOURCE_DIR}/cmake/FindHbarNlopt.cmake
         DESTINATION ${HBAR_CONFIG_DIR})

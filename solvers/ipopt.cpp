@@ -1,17 +1,18 @@
 #include "hbar/solvers/ipopt.h"
 
 #include <IpIpoptApplication.hpp>
+#include <IpJournalist.hpp>
 #include <IpTNLP.hpp>
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <exception>
 #include <limits>
 #include <mutex>
 #include <optional>
 #include <utility>
 
-#include "hbar/solvers/ipopt_options.h"
+#include "hbar/solvers/ipopt_run.h"
+#include "hbar/solvers/scaled_nlp.h"
 
 namespace hbar::solvers {
 namespace {
@@ -46,87 +47,75 @@ class ExclusiveRun {
   std::unique_lock<std::mutex> lock_;
 };
 
-/// What an Nlp looks like to Ipopt: x divided by its scale, C arrays, false for failure.
+using Vector = Eigen::Map<const Eigen::VectorXd>;
+using Output = Eigen::Map<Eigen::VectorXd>;
+
+/// What an Nlp looks like to Ipopt: scaled, C arrays, false for failure.
 class Adapter final : public Ipopt::TNLP {
  public:
   Adapter(Nlp& nlp, const IpoptOptions& options)
-      : variables_(nlp.variables()),
-        constraints_(nlp.constraint_limits()),
-        pattern_(nlp.jacobian_pattern()),
-        options_(options),
-        evaluator_(nlp, options.constraint_tolerance) {
-    scale_ = variables_.scale.size() > 0 ? variables_.scale
-                                         : Eigen::VectorXd(Eigen::VectorXd::Ones(n()));
-    result_.constraint_multipliers.setZero(m());
-    result_.lower_multipliers.setZero(n());
-    result_.upper_multipliers.setZero(n());
+      : options_(options),
+        program_(nlp, options.constraint_tolerance, options.objective_scale, options.hessian) {
+    PrimalDualPoint start;
+    start.x = nlp.variables().start;
+    start_ = program_.scaled(options.warm_start.value_or(start));
+    last_ = start_;
   }
 
   bool get_nlp_info(Index& count, Index& constraint_count, Index& jacobian_count,
                     Index& hessian_count, IndexStyleEnum& style) override {
     count = static_cast<Index>(n());
     constraint_count = static_cast<Index>(m());
-    jacobian_count = static_cast<Index>(pattern_.rows.size());
-    hessian_count = 0;
+    jacobian_count = static_cast<Index>(program_.jacobian_pattern().rows.size());
+    hessian_count = static_cast<Index>(program_.hessian_pattern().rows.size());
     style = C_STYLE;
     return true;
   }
 
   bool get_bounds_info(Index, Number* x_l, Number* x_u, Index, Number* g_l, Number* g_u) override {
-    const auto bound = [](double value) { return std::clamp(value, -1e20, 1e20); };
-    for (Index i = 0; i < n(); ++i) {
-      x_l[i] = bound(variables_.lower[i] / scale_[i]);
-      x_u[i] = bound(variables_.upper[i] / scale_[i]);
-    }
-    for (Index i = 0; i < m(); ++i) {
-      g_l[i] = bound(constraints_.lower[i]);
-      g_u[i] = bound(constraints_.upper[i]);
-    }
+    // Ipopt's infinity.
+    const auto bounded = [](const Eigen::VectorXd& v) { return v.cwiseMax(-1e20).cwiseMin(1e20); };
+    Output(x_l, n()) = bounded(program_.scaled_lower());
+    Output(x_u, n()) = bounded(program_.scaled_upper());
+    if (m() == 0) return true;
+    Output(g_l, m()) = bounded(program_.scaled_constraint_lower());
+    Output(g_u, m()) = bounded(program_.scaled_constraint_upper());
     return true;
   }
 
-  bool get_starting_point(Index, bool init_x, Number* x, bool init_z, Number*, Number*, Index,
-                          bool init_lambda, Number*) override {
-    if (init_z || init_lambda) return false;
-    if (init_x) Eigen::Map<Eigen::VectorXd>(x, n()) = variables_.start.cwiseQuotient(scale_);
+  bool get_starting_point(Index, bool init_x, Number* x, bool init_z, Number* z_L, Number* z_U,
+                          Index, bool init_lambda, Number* lambda) override {
+    if (init_x) Output(x, n()) = start_.x;
+    if (init_z) Output(z_L, n()) = start_.lower_multipliers;
+    if (init_z) Output(z_U, n()) = start_.upper_multipliers;
+    if (init_lambda && m() > 0) Output(lambda, m()) = start_.constraint_multipliers;
     return true;
   }
 
   bool eval_f(Index, const Number* x, bool, Number& value) override {
-    if (must_stop()) return false;
-    const double* f = evaluator_.objective(unscaled(x));
-    if (f != nullptr) value = *f;
-    return f != nullptr;
+    return !must_stop() && program_.scaled_objective(Vector(x, n()), value);
   }
 
   bool eval_grad_f(Index, const Number* x, bool, Number* gradient) override {
-    if (must_stop()) return false;
-    const Eigen::VectorXd* g = evaluator_.gradient(unscaled(x));
-    if (g != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, n()) = g->cwiseProduct(scale_);
-    return g != nullptr;
+    return !must_stop() && program_.scaled_gradient(Vector(x, n()), Output(gradient, n()));
   }
 
   bool eval_g(Index, const Number* x, bool, Index, Number* values) override {
-    if (must_stop()) return false;
-    const Eigen::VectorXd* c = evaluator_.constraints(unscaled(x));
-    if (c != nullptr) Eigen::Map<Eigen::VectorXd>(values, m()) = *c;
-    return c != nullptr;
+    return !must_stop() && program_.scaled_constraints(Vector(x, n()), Output(values, m()));
   }
 
-  bool eval_jac_g(Index, const Number* x, bool, Index, Index, Index* rows, Index* columns,
+  bool eval_jac_g(Index, const Number* x, bool, Index, Index entries, Index* rows, Index* columns,
                   Number* values) override {
-    if (values == nullptr) {
-      std::copy(pattern_.rows.begin(), pattern_.rows.end(), rows);
-      std::copy(pattern_.columns.begin(), pattern_.columns.end(), columns);
-      return true;
-    }
-    if (must_stop()) return false;
-    const Eigen::VectorXd* jacobian = evaluator_.jacobian(unscaled(x));
-    if (jacobian == nullptr) return false;
-    for (std::size_t k = 0; k < pattern_.columns.size(); ++k) {
-      values[k] = (*jacobian)[static_cast<Eigen::Index>(k)] * scale_[pattern_.columns[k]];
-    }
-    return true;
+    if (values == nullptr) return copy_pattern(program_.jacobian_pattern(), rows, columns);
+    return !must_stop() && program_.scaled_jacobian(Vector(x, n()), Output(values, entries));
+  }
+
+  bool eval_h(Index, const Number* x, bool, Number sigma, Index, const Number* lambda, bool,
+              Index entries, Index* rows, Index* columns, Number* values) override {
+    if (options_.hessian == HessianKind::kLimitedMemory) return false;
+    if (values == nullptr) return copy_pattern(program_.hessian_pattern(), rows, columns);
+    return !must_stop() && program_.scaled_hessian(Vector(x, n()), sigma, Vector(lambda, m()),
+                                                   Output(values, entries));
   }
 
   bool intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, Number objective,
@@ -134,13 +123,14 @@ class Adapter final : public Ipopt::TNLP {
                              Number regularization, Number, Number alpha_primal, Index trials,
                              const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
     result_.iterations = iteration;
+    result_.mu = mu;
     if (must_stop()) return false;
     if (!options_.on_iteration) return true;
     try {
       const bool restoring = mode == Ipopt::RestorationPhaseMode;
-      const bool go_on =
-          options_.on_iteration({iteration, restoring, objective, inf_pr, inf_du, mu, d_norm,
-                                 alpha_primal, regularization, trials, elapsed()});
+      const bool go_on = options_.on_iteration(
+          {iteration, restoring, objective * program_.objective_scale(), inf_pr, inf_du, mu, d_norm,
+           alpha_primal, regularization, trials, elapsed()});
       if (!go_on) stopped_ = IpoptStatus::kStopped;
     } catch (...) {
       exception_ = std::current_exception();
@@ -151,35 +141,37 @@ class Adapter final : public Ipopt::TNLP {
   void finalize_solution(Ipopt::SolverReturn, Index, const Number* x, const Number* z_L,
                          const Number* z_U, Index, const Number*, const Number* lambda, Number,
                          const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
-    using Vector = Eigen::Map<const Eigen::VectorXd>;
-    last_x_ = unscaled(x).cwiseMax(variables_.lower).cwiseMin(variables_.upper);
-    result_.lower_multipliers = Vector(z_L, n()).cwiseQuotient(scale_);
-    result_.upper_multipliers = Vector(z_U, n()).cwiseQuotient(scale_);
-    if (m() > 0) result_.constraint_multipliers = Vector(lambda, m());
+    last_.x = Vector(x, n());
+    last_.lower_multipliers = Vector(z_L, n());
+    last_.upper_multipliers = Vector(z_U, n());
+    if (m() > 0) last_.constraint_multipliers = Vector(lambda, m());
+    finished_ = true;
   }
 
   /// The exception of the program or of the callback, if there was one.
   [[nodiscard]] std::exception_ptr exception() const {
-    return exception_ != nullptr ? exception_ : evaluator_.exception();
+    return exception_ != nullptr ? exception_ : program_.evaluator().exception();
   }
 
   /// The result, given how Ipopt says it ended.
   [[nodiscard]] IpoptResult take_result(IpoptStatus status, Nlp& nlp);
 
  private:
-  [[nodiscard]] Eigen::Index n() const { return variables_.start.size(); }
-  [[nodiscard]] Eigen::Index m() const { return constraints_.lower.size(); }
+  [[nodiscard]] Eigen::Index n() const { return program_.variable_count(); }
+  [[nodiscard]] Eigen::Index m() const { return program_.constraint_count(); }
   [[nodiscard]] double elapsed() const {
     return std::chrono::duration<double>(Clock::now() - begin_).count();
   }
-  [[nodiscard]] Eigen::VectorXd unscaled(const Number* x) const {
-    return Eigen::Map<const Eigen::VectorXd>(x, n()).cwiseProduct(scale_);
+  static bool copy_pattern(const SparsityPattern& pattern, Index* rows, Index* columns) {
+    std::copy(pattern.rows.begin(), pattern.rows.end(), rows);
+    std::copy(pattern.columns.begin(), pattern.columns.end(), columns);
+    return true;
   }
 
   /// Whether the run is over; also asked between evaluations, since one may take long.
   bool must_stop() {
     if (exception() != nullptr) return true;
-    if (stopped_ || !evaluator_.best().found) return stopped_.has_value();
+    if (stopped_ || !program_.evaluator().best().found) return stopped_.has_value();
     if (options_.stop != nullptr && options_.stop->load()) {
       stopped_ = IpoptStatus::kInterrupted;
     } else if (elapsed() > options_.max_wall_time) {
@@ -188,14 +180,12 @@ class Adapter final : public Ipopt::TNLP {
     return stopped_.has_value();
   }
 
-  const NlpVariables variables_;
-  const NlpConstraints constraints_;
-  const SparsityPattern pattern_;
   const IpoptOptions& options_;
-  NlpEvaluator evaluator_;
-  Eigen::VectorXd scale_;
+  ScaledNlp program_;
+  PrimalDualPoint start_;  // scaled
+  PrimalDualPoint last_;   // scaled
+  bool finished_ = false;  // last_ is Ipopt's
   Clock::time_point begin_ = Clock::now();
-  Eigen::VectorXd last_x_;
   std::optional<IpoptStatus> stopped_;
   std::exception_ptr exception_;
   IpoptResult result_;
@@ -204,12 +194,17 @@ class Adapter final : public Ipopt::TNLP {
 IpoptResult Adapter::take_result(IpoptStatus status, Nlp& nlp) {
   IpoptResult& r = result_;
   r.status = stopped_.value_or(status);
-  const BestPoint& best = evaluator_.best();
-  const bool use_last = (r.converged() || r.status == IpoptStatus::kFeasible) && last_x_.size() > 0;
-  const double* f = use_last ? evaluator_.objective(last_x_) : nullptr;
-  const Eigen::VectorXd* c = use_last ? evaluator_.constraints(last_x_) : nullptr;
+  NlpEvaluator& evaluator = program_.evaluator();
+  const PrimalDualPoint last = program_.unscaled(last_);
+  r.constraint_multipliers = last.constraint_multipliers;
+  r.lower_multipliers = last.lower_multipliers;
+  r.upper_multipliers = last.upper_multipliers;
+  const BestPoint& best = evaluator.best();
+  const bool use_last = (r.converged() || r.status == IpoptStatus::kFeasible) && finished_;
+  const double* f = use_last ? evaluator.objective(last.x) : nullptr;
+  const Eigen::VectorXd* c = use_last ? evaluator.constraints(last.x) : nullptr;
   if (f != nullptr && c != nullptr) {
-    r.x = last_x_;
+    r.x = last.x;
     r.c = *c;
     r.objective = *f;
   } else if (best.found) {
@@ -217,13 +212,13 @@ IpoptResult Adapter::take_result(IpoptStatus status, Nlp& nlp) {
     r.c = best.c;
     r.objective = best.objective;
   } else {
-    r.x = variables_.start;
+    r.x = program_.unscaled(start_).x;
     r.c.setConstant(m(), std::numeric_limits<double>::quiet_NaN());
     r.objective = std::numeric_limits<double>::quiet_NaN();
   }
   r.violation = largest_violation(nlp, r.x, r.c);
-  r.feasible = best.found && r.violation.amount <= options_.constraint_tolerance;
-  r.evaluations = evaluator_.counts();
+  r.feasible = best.found && r.violation.relative <= options_.constraint_tolerance;
+  r.evaluations = evaluator.counts();
   r.elapsed = elapsed();
   r.message = concat("ipopt: ", to_string(r.status), " after ", r.iterations, " iterations: ");
   if (best.found) {
@@ -235,7 +230,7 @@ IpoptResult Adapter::take_result(IpoptStatus status, Nlp& nlp) {
   }
   if (!r.converged() && r.evaluations.failures > 0) {
     r.message += concat("; ", r.evaluations.failures,
-                        " evaluations failed, the last with: ", evaluator_.last_failure());
+                        " evaluations failed, the last with: ", evaluator.last_failure());
   }
   if (!advice(r.status).empty()) r.message += concat("; ", advice(r.status));
   return r;
@@ -290,8 +285,9 @@ Ipopt::SmartPtr<T> make_counted(Args&&... args) {
 
 }  // namespace
 
-IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {
+IpoptResult run_ipopt(Nlp& nlp, const IpoptOptions& options, std::ostream* journal) {
   validate(nlp);
+  validate_hessian(nlp, options.hessian);
   if (!(options.max_wall_time > 0.0)) {
     throw InvalidInput(concat("ipopt: max_wall_time is ", options.max_wall_time,
                               "; expected a positive number of seconds"));
@@ -303,6 +299,11 @@ IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {
   const ExclusiveRun run;
   // Without a console Ipopt prints nothing, whatever happens.
   const auto application = make_counted<Ipopt::IpoptApplication>(options.print_level > 0);
+  if (journal != nullptr) {
+    const auto stream = make_counted<Ipopt::StreamJournal>("hbar", Ipopt::J_WARNING);
+    stream->SetOutputStream(journal);
+    application->Jnlst()->AddJournal(Ipopt::SmartPtr<Ipopt::Journal>(Ipopt::GetRawPtr(stream)));
+  }
   set_ipopt_options(*application, options);
   // The empty name stands for "read no file of options".
   const std::string no_file;
@@ -314,6 +315,10 @@ IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {
   status = application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(adapter)));
   if (adapter->exception() != nullptr) std::rethrow_exception(adapter->exception());
   return adapter->take_result(translate(status), nlp);
+}
+
+IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {
+  return run_ipopt(nlp, options, nullptr);
 }
 
 }  // namespace hbar::solvers

@@ -5,11 +5,15 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 #include "hbar/solvers/nlp.h"
 #include "hbar/solvers/nlp_evaluator.h"
+#include "hbar/solvers/primal_dual_point.h"
 
 namespace hbar::solvers {
 
@@ -28,31 +32,44 @@ struct IterationInfo {
   double elapsed = 0.0;             ///< wall time since the start, s
 };
 
-/// How the Hessian of the Lagrangian is obtained.
-enum class IpoptHessian {
-  kLimitedMemory,  ///< limited-memory BFGS from gradients
-};
-
 /// What Ipopt is asked to do.
 struct IpoptOptions {
-  double tolerance = 1e-8;             ///< scaled optimality error of an optimum
-  double constraint_tolerance = 1e-6;  ///< largest violation of a feasible point, unit of c
+  double tolerance = 1e-8;  ///< scaled optimality error of an optimum
+  /// Largest violation of a feasible point, in units of the constraints' scale.
+  double constraint_tolerance = 1e-6;
   double acceptable_tolerance = 1e-6;  ///< optimality error that will do if no progress is made
   int max_iterations = 500;
   double max_wall_time = std::numeric_limits<double>::infinity();  ///< s
-  IpoptHessian hessian = IpoptHessian::kLimitedMemory;
+  /// kExact and kGaussNewton ask the program; kLimitedMemory is Ipopt's L-BFGS.
+  HessianKind hessian = HessianKind::kLimitedMemory;
+  double objective_scale = 1.0;  ///< typical size > 0 of the objective; Ipopt sees f over it
+  /// Where to begin instead of NlpVariables::start: at an earlier result's point(), say. Ipopt then
+  /// starts with these multipliers and this barrier parameter (1e-6 if mu is 0), and moves the
+  /// point away from its bounds by no more than 1e-9.
+  std::optional<PrimalDualPoint> warm_start = {};
   int print_level = 0;  ///< 0: silent; 1 to 12: Ipopt writes to standard output
 
   /// Further options under Ipopt's names; they win over those above.
-  std::map<std::string, std::string> string_options;
-  std::map<std::string, double> number_options;
-  std::map<std::string, int> integer_options;
+  std::map<std::string, std::string> string_options = {};
+  std::map<std::string, double> number_options = {};
+  std::map<std::string, int> integer_options = {};
 
   /// Called at every iterate; false stops. An exception passes out of solve_with_ipopt.
-  std::function<bool(const IterationInfo&)> on_iteration;
+  std::function<bool(const IterationInfo&)> on_iteration = {};
   /// Stops soon after it becomes true (a signal handler may set it); may be null.
   const std::atomic<bool>* stop = nullptr;
 };
+
+/// An option that Ipopt knows, under the name that the maps of IpoptOptions take.
+struct IpoptOptionInfo {
+  std::string name;
+  std::string description;  ///< one line; Ipopt leaves some empty
+  /// What Ipopt takes unless told; its type says which map the option belongs into.
+  std::variant<std::string, double, int> default_value;
+};
+
+/// Every option of the Ipopt that is linked, by name.
+[[nodiscard]] std::vector<IpoptOptionInfo> known_ipopt_options();
 
 /// How an optimisation ended.
 enum class IpoptStatus {
@@ -85,7 +102,7 @@ enum class IpoptStatus {
 struct IpoptResult {
   IpoptStatus status = IpoptStatus::kInternalError;
   std::string message;     ///< how it ended, what was reached and what to try
-  bool feasible = false;   ///< violation ≤ constraint_tolerance
+  bool feasible = false;   ///< violation.relative ≤ constraint_tolerance
   Eigen::VectorXd x;       ///< variables                                       [n]
   Eigen::VectorXd c;       ///< constraints at x                                [m]
   double objective = 0.0;  ///< f(x)
@@ -94,6 +111,7 @@ struct IpoptResult {
   Eigen::VectorXd constraint_multipliers;  ///< λ                                   [m]
   Eigen::VectorXd lower_multipliers;       ///< z_L ≥ 0                             [n]
   Eigen::VectorXd upper_multipliers;       ///< z_U ≥ 0                             [n]
+  double mu = 0.0;                         ///< barrier parameter of the last iterate
   int iterations = 0;
   EvaluationCounts evaluations;
   double elapsed = 0.0;  ///< wall time, s
@@ -102,20 +120,26 @@ struct IpoptResult {
   [[nodiscard]] bool converged() const {
     return status == IpoptStatus::kOptimal || status == IpoptStatus::kAcceptable;
   }
+  /// x with its multipliers: what warm_start takes.
+  [[nodiscard]] PrimalDualPoint point() const {
+    return {x, constraint_multipliers, lower_multipliers, upper_multipliers, mu};
+  }
 };
 
 /// Minimises a nonlinear program with Ipopt (EPL; target hbar::ipopt), 3.11 or newer.
 ///
-/// Variables are divided by their scale for Ipopt; everything in the options, the callback and the
-/// result is in the program's own units unless it says otherwise. Optimisations of several threads
-/// wait for each other, because Ipopt with MUMPS is not reentrant; the program and the callback
-/// must not call solve_with_ipopt themselves. No file ipopt.opt is read.
+/// Variables, constraints and the objective are divided by their scales for Ipopt; everything in
+/// the options, the callback and the result is in the program's own units unless it says otherwise.
+/// Optimisations of several threads wait for each other, because Ipopt with MUMPS is not reentrant;
+/// the program and the callback must not call solve_with_ipopt themselves. No file ipopt.opt is
+/// read.
 ///
 /// @param nlp      the program
 /// @param options  see there
 /// @returns how it ended and the best point; always look at converged()
-/// @throws InvalidInput if the program is inconsistent (see validate), or an option is unknown or
-///   has a value that Ipopt does not allow
+/// @throws InvalidInput if the program is inconsistent (see validate), has no Hessian of the kind
+///   asked for, the warm start is of another size, or an option is unknown or has a value that
+///   Ipopt does not allow
 /// @throws whatever the program (other than EvaluationError) or the callback throws
 [[nodiscard]] IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options = {});
 

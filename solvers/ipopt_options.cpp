@@ -1,11 +1,15 @@
-#include "hbar/solvers/ipopt_options.h"
-
 #include <IpIpoptApplication.hpp>
 #include <IpRegOptions.hpp>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 #include <type_traits>
+#include <utility>
 #include <vector>
+
+#include "hbar/solvers/ipopt.h"
+#include "hbar/solvers/ipopt_run.h"
 
 namespace hbar::solvers {
 namespace {
@@ -85,10 +89,14 @@ void set_option(Ipopt::IpoptApplication& application, const std::string& name, c
 }
 
 void refuse_decided_elsewhere(const std::string& name) {
-  const bool hessian = name == "hessian_approximation";
-  if (!hessian && name != "print_level") return;
-  throw InvalidInput(concat("ipopt: option \"", name, "\" is decided by IpoptOptions::",
-                            hessian ? "hessian" : "print_level"));
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kDecided = {
+      {{"hessian_approximation", "hessian"},
+       {"print_level", "print_level"},
+       {"warm_start_init_point", "warm_start"}}};
+  for (const auto& [option, member] : kDecided) {
+    if (name != option) continue;
+    throw InvalidInput(concat("ipopt: option \"", name, "\" is decided by IpoptOptions::", member));
+  }
 }
 
 template <typename Map>
@@ -99,7 +107,43 @@ void set_all(Ipopt::IpoptApplication& application, const Map& values) {
   }
 }
 
+/// Ipopt's own defaults push a warm start into the interior by 1e-3 of the range, which would
+/// spoil a solution on its bounds.
+void set_warm_start(Ipopt::IpoptApplication& application, double mu) {
+  if (!(mu >= 0.0 && std::isfinite(mu))) {
+    throw InvalidInput(concat("ipopt: the warm start's mu is ", mu,
+                              "; expected a positive number, or 0 where it is not known"));
+  }
+  constexpr double kPush = 1e-9;
+  constexpr double kUnknownMu = 1e-6;
+  set_option(application, "warm_start_init_point", std::string("yes"));
+  for (const char* name :
+       {"warm_start_bound_push", "warm_start_bound_frac", "warm_start_slack_bound_push",
+        "warm_start_slack_bound_frac", "warm_start_mult_bound_push"}) {
+    set_option(application, name, kPush);
+  }
+  set_option(application, "mu_init", mu > 0.0 ? mu : kUnknownMu);
+}
+
 }  // namespace
+
+std::vector<IpoptOptionInfo> known_ipopt_options() {
+  const Ipopt::SmartPtr<Ipopt::IpoptApplication> application =
+      new Ipopt::IpoptApplication(false);  // NOLINT(hbar-naked-new): the SmartPtr owns it
+  std::vector<IpoptOptionInfo> known;
+  for (const auto& [name, option] : application->RegOptions()->RegisteredOptionsList()) {
+    IpoptOptionInfo info{name, option->ShortDescription(), {}};
+    if (option->Type() == Ipopt::OT_Number) {
+      info.default_value = option->DefaultNumber();
+    } else if (option->Type() == Ipopt::OT_Integer) {
+      info.default_value = static_cast<int>(option->DefaultInteger());
+    } else {
+      info.default_value = option->DefaultString();
+    }
+    known.push_back(std::move(info));
+  }
+  return known;
+}
 
 void set_ipopt_options(Ipopt::IpoptApplication& application, const IpoptOptions& options) {
   set_option(application, "tol", options.tolerance);
@@ -111,11 +155,10 @@ void set_ipopt_options(Ipopt::IpoptApplication& application, const IpoptOptions&
   set_option(application, "sb", std::string("yes"));
   // The default differs between versions.
   set_option(application, "honor_original_bounds", std::string("yes"));
-  switch (options.hessian) {
-    case IpoptHessian::kLimitedMemory:
-      set_option(application, "hessian_approximation", std::string("limited-memory"));
-      break;
+  if (options.hessian == HessianKind::kLimitedMemory) {
+    set_option(application, "hessian_approximation", std::string("limited-memory"));
   }
+  if (options.warm_start) set_warm_start(application, options.warm_start->mu);
   set_all(application, options.string_options);
   set_all(application, options.number_options);
   set_all(application, options.integer_options);

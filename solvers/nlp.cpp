@@ -27,13 +27,39 @@ void refuse_limits(const char* kind, Eigen::Index i, const std::vector<std::stri
   }
 }
 
+void refuse_scale(const char* kind, const Eigen::VectorXd& scale,
+                  const std::vector<std::string>& names) {
+  if (scale.size() == 0) return;
+  refuse_size(concat("scale of the ", kind, "s").c_str(), scale.size(),
+              static_cast<Eigen::Index>(names.size()));
+  for (Eigen::Index i = 0; i < scale.size(); ++i) {
+    if (scale[i] > 0.0 && std::isfinite(scale[i])) continue;
+    throw InvalidInput(
+        concat(item(kind, i, names), ": the scale is ", scale[i], "; expected a positive number"));
+  }
+}
+
+void refuse_pattern(const char* matrix, const SparsityPattern& pattern, Eigen::Index rows,
+                    Eigen::Index columns) {
+  refuse_size(concat("columns of the ", matrix, " pattern").c_str(),
+              static_cast<Eigen::Index>(pattern.columns.size()),
+              static_cast<Eigen::Index>(pattern.rows.size()));
+  for (std::size_t k = 0; k < pattern.rows.size(); ++k) {
+    const int row = pattern.rows[k];
+    const int column = pattern.columns[k];
+    if (row >= 0 && row < rows && column >= 0 && column < columns) continue;
+    throw InvalidInput(concat("nlp: entry ", k, " of the ", matrix, " pattern is at row ", row,
+                              ", column ", column, "; the ", matrix, " is ", rows, " x ", columns));
+  }
+}
+
 void validate_variables(const NlpVariables& v) {
   const Eigen::Index n = v.start.size();
   if (n == 0) throw InvalidInput("nlp: there are no variables; expected at least one");
   refuse_size("lower bounds of the variables", v.lower.size(), n);
   refuse_size("upper bounds of the variables", v.upper.size(), n);
   refuse_size("names of the variables", static_cast<Eigen::Index>(v.names.size()), n);
-  if (v.scale.size() != 0) refuse_size("scale of the variables", v.scale.size(), n);
+  refuse_scale("variable", v.scale, v.names);
   bool any_free = false;
   for (Eigen::Index i = 0; i < n; ++i) {
     refuse_limits("variable", i, v.names, v.lower[i], v.upper[i]);
@@ -44,10 +70,6 @@ void validate_variables(const NlpVariables& v) {
     if (v.start[i] < v.lower[i] || v.start[i] > v.upper[i]) {
       throw InvalidInput(concat(item("variable", i, v.names), ": the start ", v.start[i],
                                 " is outside its bounds ", v.lower[i], " to ", v.upper[i]));
-    }
-    if (v.scale.size() != 0 && !(v.scale[i] > 0.0 && std::isfinite(v.scale[i]))) {
-      throw InvalidInput(concat(item("variable", i, v.names), ": the scale is ", v.scale[i],
-                                "; expected a positive number"));
     }
     any_free = any_free || v.lower[i] < v.upper[i];
   }
@@ -79,33 +101,34 @@ void validate(const Nlp& nlp) {
   for (Eigen::Index i = 0; i < m; ++i) {
     refuse_limits("constraint", i, c.names, c.lower[i], c.upper[i]);
   }
-  const SparsityPattern& pattern = nlp.jacobian_pattern();
-  refuse_size("columns of the Jacobian pattern", static_cast<Eigen::Index>(pattern.columns.size()),
-              static_cast<Eigen::Index>(pattern.rows.size()));
+  refuse_scale("constraint", c.scale, c.names);
+  refuse_pattern("Jacobian", nlp.jacobian_pattern(), m, n);
+}
+
+void validate_hessian(Nlp& nlp, HessianKind kind) {
+  if (kind == HessianKind::kLimitedMemory) return;
+  const SparsityPattern& pattern = nlp.hessian_pattern(kind);
+  const Eigen::Index n = nlp.variables().start.size();
+  refuse_pattern("Hessian", pattern, n, n);
   for (std::size_t k = 0; k < pattern.rows.size(); ++k) {
-    if (pattern.rows[k] < 0 || pattern.rows[k] >= m || pattern.columns[k] < 0 ||
-        pattern.columns[k] >= n) {
-      throw InvalidInput(concat("nlp: entry ", k, " of the Jacobian pattern is at row ",
-                                pattern.rows[k], ", column ", pattern.columns[k],
-                                "; the Jacobian is ", m, " x ", n));
-    }
+    if (pattern.rows[k] >= pattern.columns[k]) continue;
+    throw InvalidInput(concat("nlp: entry ", k, " of the Hessian pattern is at row ",
+                              pattern.rows[k], ", column ", pattern.columns[k],
+                              "; expected the lower triangle, row >= column"));
   }
 }
 
 Violation largest_violation(const Nlp& nlp, const Eigen::VectorXd& x, const Eigen::VectorXd& c) {
   Violation worst;
-  const auto add = [&worst](double value, double lower, double upper, const std::string& name) {
-    const double amount = std::max(lower - value, value - upper);
-    if (amount > worst.amount) worst = {amount, name};
+  const auto add = [&worst](Eigen::Index i, double value, const auto& limits) {
+    const double amount = std::max(limits.lower[i] - value, value - limits.upper[i]);
+    const double relative = limits.scale.size() > 0 ? amount / limits.scale[i] : amount;
+    if (relative > worst.relative) {
+      worst = {amount, limits.names[static_cast<std::size_t>(i)], relative};
+    }
   };
-  const NlpConstraints& limits = nlp.constraint_limits();
-  for (Eigen::Index i = 0; i < c.size(); ++i) {
-    add(c[i], limits.lower[i], limits.upper[i], limits.names[static_cast<std::size_t>(i)]);
-  }
-  const NlpVariables& v = nlp.variables();
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    add(x[i], v.lower[i], v.upper[i], v.names[static_cast<std::size_t>(i)]);
-  }
+  for (Eigen::Index i = 0; i < c.size(); ++i) add(i, c[i], nlp.constraint_limits());
+  for (Eigen::Index i = 0; i < x.size(); ++i) add(i, x[i], nlp.variables());
   return worst;
 }
 

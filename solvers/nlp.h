@@ -30,6 +30,7 @@ struct NlpConstraints {
   Eigen::VectorXd lower;           ///< lower bounds, unit of c  [m]
   Eigen::VectorXd upper;           ///< upper bounds, unit of c  [m]
   std::vector<std::string> names;  ///< for messages             [m]
+  Eigen::VectorXd scale;           ///< typical size > 0 of a change of c; empty: ones  [m or 0]
 };
 
 /// Where a matrix may be non-zero. Entries of one place are summed.
@@ -111,13 +112,22 @@ class Nlp {
 ///   bounds, a scale is not positive, or the Jacobian pattern points outside the matrix
 void validate(const Nlp& nlp);
 
+/// Refuses a program whose Hessian has no consistent pattern; says nothing to kLimitedMemory.
+///
+/// @param nlp   validated
+/// @param kind  which Hessian is to be used
+/// @throws InvalidInput if the program has no Hessian of that kind, or its pattern points outside
+///   the lower triangle of an n x n matrix
+void validate_hessian(Nlp& nlp, HessianKind kind);
+
 /// A violated constraint or bound.
 struct Violation {
-  double amount = 0.0;  ///< largest violation, 0 if there is none; unit of its constraint
-  std::string name;     ///< of the worst constraint or variable; empty if amount is 0
+  double amount = 0.0;    ///< by how much, 0 if nothing is violated; unit of its constraint
+  std::string name;       ///< of the worst constraint or variable; empty if amount is 0
+  double relative = 0.0;  ///< amount over the typical size (scale) of its constraint
 };
 
-/// The largest violation of constraints and bounds.
+/// The largest violation of constraints and bounds, in units of their typical sizes.
 ///
 /// @param nlp  the program
 /// @param x    variables               [n]

@@ -9,7 +9,7 @@ NlpEvaluator::NlpEvaluator(Nlp& nlp, double tolerance) : nlp_(nlp), tolerance_(t
 void NlpEvaluator::move_to(const Eigen::VectorXd& x) {
   if (x_.size() == x.size() && x_ == x) return;
   x_ = x;
-  f_state_ = g_state_ = c_state_ = jacobian_state_ = State::kUnknown;
+  f_state_ = g_state_ = c_state_ = jacobian_state_ = hessian_state_ = State::kUnknown;
   // Without constraints there is nothing to evaluate.
   if (nlp_.constraint_limits().lower.size() == 0) {
     c_.resize(0);
@@ -96,9 +96,29 @@ const Eigen::VectorXd* NlpEvaluator::jacobian(const Eigen::VectorXd& x) {
   return known ? &jacobian_ : nullptr;
 }
 
+const Eigen::VectorXd* NlpEvaluator::hessian(const Eigen::VectorXd& x, double sigma,
+                                             const Eigen::VectorXd& lambda, HessianKind kind) {
+  move_to(x);
+  const bool same =
+      sigma == sigma_ && kind == kind_ && lambda.size() == lambda_.size() && lambda == lambda_;
+  if (!same) {
+    sigma_ = sigma;
+    kind_ = kind;
+    lambda_ = lambda;
+    hessian_state_ = State::kUnknown;
+  }
+  const bool known = evaluate(hessian_state_, counts_.hessian, [&] {
+    const auto entries = static_cast<Eigen::Index>(nlp_.hessian_pattern(kind).rows.size());
+    hessian_.setZero(entries);
+    nlp_.lagrangian_hessian(x_, sigma, lambda, kind, hessian_);
+    return finite_or_fail(hessian_, entries, "the Lagrangian's Hessian");
+  });
+  return known ? &hessian_ : nullptr;
+}
+
 void NlpEvaluator::remember_if_best() {
   if (f_state_ != State::kKnown || c_state_ != State::kKnown) return;
-  const double violation = largest_violation(nlp_, x_, c_).amount;
+  const double violation = largest_violation(nlp_, x_, c_).relative;
   const bool feasible = violation <= tolerance_;
   const bool better = !best_.found || (feasible && !best_.feasible) ||
                       (feasible && best_.feasible && f_ < best_.objective) ||

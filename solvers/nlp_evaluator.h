@@ -14,6 +14,7 @@ struct EvaluationCounts {
   int gradient = 0;
   int constraints = 0;
   int jacobian = 0;
+  int hessian = 0;
   int failures = 0;  ///< calls that threw EvaluationError or gave a number that is not finite
 };
 
@@ -25,7 +26,7 @@ struct BestPoint {
   Eigen::VectorXd x;       ///< variables    [n]
   Eigen::VectorXd c;       ///< constraints  [m]
   double objective = 0.0;  ///< f(x)
-  double violation = 0.0;  ///< of the worst constraint or bound
+  double violation = 0.0;  ///< of the worst constraint or bound, in units of its typical size
 };
 
 /// Evaluates an Nlp for an optimiser: each function at most once per x and only when asked, failed
@@ -34,7 +35,7 @@ struct BestPoint {
 class NlpEvaluator {
  public:
   /// @param nlp        validated; must outlive this object
-  /// @param tolerance  largest violation of a feasible point, unit of the constraints
+  /// @param tolerance  largest violation of a feasible point, in units of the typical sizes
   NlpEvaluator(Nlp& nlp, double tolerance);
 
   /// The value at x, or nullptr if x cannot be evaluated. A pointer is good until the next call
@@ -45,6 +46,15 @@ class NlpEvaluator {
   [[nodiscard]] const Eigen::VectorXd* gradient(const Eigen::VectorXd& x);
   [[nodiscard]] const Eigen::VectorXd* constraints(const Eigen::VectorXd& x);
   [[nodiscard]] const Eigen::VectorXd* jacobian(const Eigen::VectorXd& x);
+
+  /// The entries of the Hessian of σ f + λᵀ c, evaluated at most once per (x, σ, λ, kind).
+  ///
+  /// @param x       variables                [n]
+  /// @param sigma   factor of the objective
+  /// @param lambda  multipliers              [m]
+  /// @param kind    kExact or kGaussNewton
+  [[nodiscard]] const Eigen::VectorXd* hessian(const Eigen::VectorXd& x, double sigma,
+                                               const Eigen::VectorXd& lambda, HessianKind kind);
 
   [[nodiscard]] const EvaluationCounts& counts() const { return counts_; }
   [[nodiscard]] const BestPoint& best() const { return best_; }
@@ -72,10 +82,15 @@ class NlpEvaluator {
   Eigen::VectorXd g_;
   Eigen::VectorXd c_;
   Eigen::VectorXd jacobian_;
+  Eigen::VectorXd hessian_;
+  double sigma_ = 0.0;  // of hessian_, as are the next two
+  Eigen::VectorXd lambda_;
+  HessianKind kind_ = HessianKind::kExact;
   State f_state_ = State::kUnknown;
   State g_state_ = State::kUnknown;
   State c_state_ = State::kUnknown;
   State jacobian_state_ = State::kUnknown;
+  State hessian_state_ = State::kUnknown;
   EvaluationCounts counts_;
   BestPoint best_;
   std::string last_failure_;

@@ -6,7 +6,8 @@
 set -eu
 
 build="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev coinor-libipopt-dev
-       liblapack-dev libmumps-seq-dev libtinyxml2-dev libcli11-dev nlohmann-json3-dev libfmt-dev"
+       liblapack-dev libmumps-seq-dev libnlopt-dev libtinyxml2-dev libcli11-dev
+       nlohmann-json3-dev libfmt-dev"
 test="python3 git libgtest-dev"
 # Left out with a message where the distribution has none: one of each line is enough.
 optional="libmujoco-dev:the_comparison_with_MuJoCo

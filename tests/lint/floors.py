@@ -15,6 +15,7 @@ LIBRARIES = {
     "lapack": r"(lapacke|lapack|cblas)\.h$",
     "mumps": r"[sdcz]mumps_c\.h$",
     "ipopt": r"(coin|coin-or)/|Ip\w+\.hpp$",
+    "nlopt": r"nlopt\.h$",
     "cli11": r"CLI/",
     "json": r"nlohmann/",
     "fmt": r"fmt/",
@@ -29,7 +30,8 @@ SHARED = ("core/error.h", "core/scalar.h")  # what a floor without mechanics may
 FLOORS = {
     "core": (("core",), ("eigen",)),
     "scene": (("core", "scene"), ("eigen", "tinyxml2", "posix")),
-    "solvers": (("solvers", *SHARED), ("eigen", "suitesparse", "lapack", "mumps", "ipopt")),
+    "solvers": (("solvers", *SHARED),
+                ("eigen", "suitesparse", "lapack", "mumps", "ipopt", "nlopt")),
     "adjoint": (("core", "solvers", "adjoint"), ("eigen",)),
     "examples": (EVERY_FLOOR, ("eigen", "cli11", "json", "fmt", "posix", "suitesparse")),
     "tests": (EVERY_FLOOR, tuple(LIBRARIES)),

@@ -29,6 +29,27 @@ TEST(NlpEvaluator, CallsOncePerPointAndOnlyWhenAsked) {
   EXPECT_EQ(*evaluator.objective(x), program.objective(x));
 }
 
+TEST(NlpEvaluator, EvaluatesTheHessianOncePerPointAndMultipliers) {
+  Hs071 program;
+  NlpEvaluator evaluator(program, 1e-6);
+  const Eigen::VectorXd x = program.variables_.start;
+  const Eigen::Vector2d lambda(0.5, -1.0);
+  Eigen::VectorXd expected(10);
+  program.lagrangian_hessian(x, 2.0, lambda, HessianKind::kExact, expected);
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    const Eigen::VectorXd* values = evaluator.hessian(x, 2.0, lambda, HessianKind::kExact);
+    ASSERT_NE(values, nullptr);
+    EXPECT_EQ(*values, expected);
+  }
+  EXPECT_EQ(evaluator.counts().hessian, 1);
+  EXPECT_EQ(evaluator.counts().objective, 0) << "nothing else is evaluated";
+  ASSERT_NE(evaluator.hessian(x, 1.0, lambda, HessianKind::kExact), nullptr);
+  ASSERT_NE(evaluator.hessian(x, 1.0, 2.0 * lambda, HessianKind::kExact), nullptr);
+  ASSERT_NE(evaluator.hessian(x, 1.0, 2.0 * lambda, HessianKind::kGaussNewton), nullptr);
+  ASSERT_NE(evaluator.hessian(2.0 * x, 1.0, 2.0 * lambda, HessianKind::kGaussNewton), nullptr);
+  EXPECT_EQ(evaluator.counts().hessian, 5);
+}
+
 TEST(NlpEvaluator, PrefersFeasiblePointsThenTheLeastObjective) {
   Hs071 program;
   program.limits_.lower[1] = 0.0;

@@ -44,6 +44,10 @@ const std::vector<BadProgram> kBadPrograms = {
      "nlp: no free variable: all 4 have equal lower and upper bounds; widen at least one"},
     {[](Hs071& p) { p.limits_.lower[1] = 41.0; },
      "nlp: constraint 1 (sphere): the lower bound 41 exceeds the upper bound 40"},
+    {[](Hs071& p) { p.limits_.scale = Eigen::Vector2d(1.0, -2.0); },
+     "nlp: constraint 1 (sphere): the scale is -2; expected a positive number"},
+    {[](Hs071& p) { p.limits_.scale = Eigen::Vector3d(1.0, 1.0, 1.0); },
+     "nlp: scale of the constraints has 3 entries; expected 2"},
     {[](Hs071& p) { p.limits_.upper.resize(1); },
      "nlp: upper bounds of the constraints has 1 entries; expected 2"},
     {[](Hs071& p) { p.pattern_.rows.pop_back(); },
@@ -61,6 +65,21 @@ TEST(EveryBadProgram, IsRefusedWithItsMessage) {
   }
 }
 
+TEST(EveryBadHessian, IsRefusedWithItsMessage) {
+  Hs071 program;
+  EXPECT_NO_THROW(validate_hessian(program, HessianKind::kExact));
+  program.hessian_pattern_.rows[1] = 0;
+  program.hessian_pattern_.columns[1] = 1;
+  const auto refusal = [&] { validate_hessian(program, HessianKind::kExact); };
+  EXPECT_EQ(message_of<InvalidInput>(refusal),
+            "nlp: entry 1 of the Hessian pattern is at row 0, column 1; expected the lower "
+            "triangle, row >= column");
+  program.hessian_pattern_.rows[1] = 4;
+  EXPECT_EQ(message_of<InvalidInput>(refusal),
+            "nlp: entry 1 of the Hessian pattern is at row 4, column 1; the Hessian is 4 x 4");
+  EXPECT_NO_THROW(validate_hessian(program, HessianKind::kLimitedMemory)) << "nothing is asked";
+}
+
 TEST(LargestViolation, NamesTheWorstConstraintOrBound) {
   const Hs071 program;
   const Eigen::Vector4d inside(2, 2, 2, 2);
@@ -73,6 +92,16 @@ TEST(LargestViolation, NamesTheWorstConstraintOrBound) {
   worst = largest_violation(program, Eigen::Vector4d(2, 2, 9, 2), Eigen::Vector2d(30, 43));
   EXPECT_EQ(worst.amount, 4.0);
   EXPECT_EQ(worst.name, "x2");
+}
+
+TEST(LargestViolation, ComparesInTypicalSizes) {
+  Hs071 program;
+  program.limits_.scale = Eigen::Vector2d(1.0, 0.1);
+  const Violation worst =
+      largest_violation(program, Eigen::Vector4d(2, 2, 2, 2), Eigen::Vector2d(22, 41));
+  EXPECT_EQ(worst.name, "sphere");
+  EXPECT_EQ(worst.amount, 1.0);
+  EXPECT_EQ(worst.relative, 10.0);
 }
 
 }  // namespace

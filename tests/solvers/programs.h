@@ -42,10 +42,36 @@ class Program : public Nlp {
   SparsityPattern pattern_;
 };
 
-/// (1 − x₀)² + 100 (x₁ − x₀²)², least at (1, 1); hooks let a test disturb it.
-class Rosenbrock : public Program {
+/// Every place of a lower triangle, row by row.
+inline SparsityPattern lower_triangle(int n) {
+  SparsityPattern pattern;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      pattern.rows.push_back(i);
+      pattern.columns.push_back(j);
+    }
+  }
+  return pattern;
+}
+
+/// A program with a dense Hessian.
+class CurvedProgram : public Program {
  public:
-  Rosenbrock() : Program(Eigen::Vector2d(-1.2, 1.0), 0) {}
+  CurvedProgram(const Eigen::VectorXd& start, int constraint_count)
+      : Program(start, constraint_count),
+        hessian_pattern_(lower_triangle(static_cast<int>(start.size()))) {}
+
+  [[nodiscard]] const SparsityPattern& hessian_pattern(HessianKind) override {
+    return hessian_pattern_;
+  }
+
+  SparsityPattern hessian_pattern_;
+};
+
+/// (1 − x₀)² + 100 (x₁ − x₀²)², least at (1, 1); hooks let a test disturb it.
+class Rosenbrock : public CurvedProgram {
+ public:
+  Rosenbrock() : CurvedProgram(Eigen::Vector2d(-1.2, 1.0), 0) {}
 
   double objective(const Eigen::VectorXd& x) override {
     ++visits[{x[0], x[1]}];
@@ -58,16 +84,22 @@ class Rosenbrock : public Program {
   }
   void constraints(const Eigen::VectorXd&, Eigen::VectorXd&) override {}
   void constraint_jacobian(const Eigen::VectorXd&, Eigen::VectorXd&) override {}
+  void lagrangian_hessian(const Eigen::VectorXd& x, double sigma, const Eigen::VectorXd&,
+                          HessianKind, Eigen::VectorXd& values) override {
+    values << 2.0 - 400.0 * (x[1] - 3.0 * x[0] * x[0]), -400.0 * x[0], 200.0 * hessian_factor;
+    values *= sigma;
+  }
 
   std::function<void(const Eigen::VectorXd&)> on_objective;
   double gradient_factor = 1.0;  ///< other than 1: a planted error
+  double hessian_factor = 1.0;   ///< other than 1: a planted error
   std::map<std::pair<double, double>, int> visits;
 };
 
 /// Hock and Schittkowski 71: x₀x₃(x₀+x₁+x₂)+x₂, with x₀x₁x₂x₃ ≥ 25, |x|² = 40, 1 ≤ x ≤ 5.
-class Hs071 : public Program {
+class Hs071 : public CurvedProgram {
  public:
-  Hs071() : Program(Eigen::Vector4d(1.0, 5.0, 5.0, 1.0), 2) {
+  Hs071() : CurvedProgram(Eigen::Vector4d(1.0, 5.0, 5.0, 1.0), 2) {
     variables_.lower.setConstant(1.0);
     variables_.upper.setConstant(5.0);
     limits_.lower << 25.0, 40.0;
@@ -89,7 +121,19 @@ class Hs071 : public Program {
     values << x[1] * x[2] * x[3], x[0] * x[2] * x[3], x[0] * x[1] * x[3],
         jacobian_factor * x[0] * x[1] * x[2], 2.0 * x;
   }
+  void lagrangian_hessian(const Eigen::VectorXd& x, double sigma, const Eigen::VectorXd& lambda,
+                          HessianKind, Eigen::VectorXd& values) override {
+    const double a = sigma;
+    const double p = hessian_factor * lambda[0];
+    const double s = 2.0 * lambda[1];
+    values << 2.0 * a * x[3] + s,                                  //
+        a * x[3] + p * x[2] * x[3], s,                             //
+        a * x[3] + p * x[1] * x[3], p * x[0] * x[3], s,            //
+        a * (2.0 * x[0] + x[1] + x[2]) + lambda[0] * x[1] * x[2],  //
+        a * x[0] + lambda[0] * x[0] * x[2], a * x[0] + lambda[0] * x[0] * x[1], s;
+  }
   double jacobian_factor = 1.0;  ///< other than 1: a planted error
+  double hessian_factor = 1.0;   ///< other than 1: a planted error
 };
 
 inline const Eigen::Vector4d kHs071Optimum(1.0, 4.74299963, 3.82114998, 1.37940829);

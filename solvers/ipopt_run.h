@@ -1,5 +1,7 @@
 #pragma once
 
+#include <iosfwd>
+
 #include "hbar/solvers/ipopt.h"
 
 namespace Ipopt {
@@ -13,5 +15,10 @@ namespace hbar::solvers {
 /// @throws InvalidInput if an option is unknown (naming the nearest one), of another type, out of
 ///   its range, or one that IpoptOptions decides
 void set_ipopt_options(Ipopt::IpoptApplication& application, const IpoptOptions& options);
+
+/// What solve_with_ipopt does, with Ipopt's warnings and summaries written to a stream.
+///
+/// @param journal  may be null
+[[nodiscard]] IpoptResult run_ipopt(Nlp& nlp, const IpoptOptions& options, std::ostream* journal);
 
 }  // namespace hbar::solvers
