@@ -71,12 +71,14 @@ class ControlSmoothness final : public ObjectiveTerm {
   }
 
   void add_partials(const TrajectoryValues& values, TrajectoryPartials& partials) const override {
+    Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(values.u.rows(), values.u.cols());
     for (Eigen::Index k = 1; k < values.u.cols(); ++k) {
       const Eigen::VectorXd slope =
           factor(values, k) / values.h * (values.u.col(k) - values.u.col(k - 1));
-      partials.u.col(k) += slope;
-      partials.u.col(k - 1) -= slope;
+      slopes.col(k) += slope;
+      slopes.col(k - 1) -= slope;
     }
+    partials.u += slopes;
   }
 
   [[nodiscard]] std::vector<SecondPlace> second_places(

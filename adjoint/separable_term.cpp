@@ -23,8 +23,8 @@ void check_shapes(const std::string& name, const StepSum& sum, const TrajectoryV
   if (target.size() > 0 &&
       (target.rows() != rows || (target.cols() != steps && target.cols() != 1))) {
     throw InvalidInput(concat(name, ": target of ", field_name(sum.field), " is ", target.rows(),
-                              " x ", target.cols(), "; it must be ", rows, " x ", steps, " or ",
-                              rows, " x 1"));
+                              " x ", target.cols(), "; it must be ",
+                              steps == 1 ? "" : concat(rows, " x ", steps, " or "), rows, " x 1"));
   }
   if (sum.steps.each.size() > 0 && sum.steps.each.size() != steps) {
     throw InvalidInput(concat(name, ": there are ", sum.steps.each.size(),

@@ -43,6 +43,37 @@ TEST(Objective, IsTheSumOfItsTerms) {
   EXPECT_EQ(testing::flatten_values(sum.partials(values)), parts);
 }
 
+TEST(Objective, ListsTheSecondPartialsOfItsTermsOneAfterTheOther) {
+  const TrajectoryValues values = testing::random_values(3);
+  Objective sum(squared_final_position(2.0));
+  sum.add(final_number(ValueField::kQ, 0)).add(effort(3.0));
+  const std::vector<SecondPlace> places = sum.second_places(values);
+  ASSERT_EQ(places.size(), 4U + 10U);
+  EXPECT_EQ(places[1].a, (ValuePlace{ValueField::kQ, 5, 1}));
+  EXPECT_EQ(places[4].b, (ValuePlace{ValueField::kU, 0, 0}));
+  const Eigen::VectorXd second = sum.second_partials(values);
+  EXPECT_EQ(second.head(4), Eigen::VectorXd::Constant(4, 2.0));
+  EXPECT_EQ(second.tail(10), Eigen::VectorXd::Constant(10, 3.0 * values.h));
+  EXPECT_EQ(Objective().second_partials(values).size(), 0);
+}
+
+TEST(Objective, NamesTheTermWhoseSecondPartialsAreNotFinite) {
+  const TrajectoryValues values = testing::random_values(4);
+  const ValuePlace place{ValueField::kP, 0, 0};
+  const Objective objective(user_term(
+      "mine", [](const TrajectoryValues&) { return 1.0; },
+      [](const TrajectoryValues&, TrajectoryPartials&) {},
+      {[place](const TrajectoryValues&) {
+         return std::vector<SecondPlace>{{0, place, place}};
+       },
+       [](const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd> second) {
+         second[0] = std::numeric_limits<double>::infinity();
+       }}));
+  EXPECT_EQ(
+      message_of<NumericalFailure>([&] { static_cast<void>(objective.second_partials(values)); }),
+      "objective term 'mine' gave a second partial that is not finite");
+}
+
 TEST(Objective, NamesTheTermWhoseValueIsNotFinite) {
   const TrajectoryValues values = testing::random_values(4);
   Objective objective(squared_variables());

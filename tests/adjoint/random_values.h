@@ -5,7 +5,8 @@
 
 namespace hbar::testing {
 
-/// Values of a made-up trajectory of 5 steps: 4 coordinates, 6 variables, 2 controls, 3 parameters.
+/// Values of a made-up trajectory of 5 steps: 4 coordinates, 6 variables, 2 controls, 3 parameters,
+/// 3 readings, 3 measurements.
 [[nodiscard]] inline TrajectoryValues random_values(unsigned seed) {
   Random random(seed);
   TrajectoryValues values;
@@ -15,27 +16,18 @@ namespace hbar::testing {
   values.v = random.matrix(6, 6);
   values.u = random.matrix(2, 5);
   values.p = random.vector(3);
+  values.tactile = random.matrix(3, 6);
+  values.measured = random.matrix(3, 6);
   return values;
 }
 
 /// All entries that an objective may depend on.
 template <typename T>
 [[nodiscard]] Eigen::VectorXd flatten_values(const T& x) {
-  Eigen::VectorXd out(x.q.size() + x.qdot.size() + x.v.size() + x.u.size() + x.p.size());
-  out << x.q.reshaped(), x.qdot.reshaped(), x.v.reshaped(), x.u.reshaped(), x.p;
-  return out;
-}
-
-/// The inverse of flatten_values.
-[[nodiscard]] inline TrajectoryValues with_values(const Eigen::VectorXd& x,
-                                                  const TrajectoryValues& shape) {
-  TrajectoryValues out = shape;
-  Eigen::Index at = 0;
-  for (Eigen::MatrixXd* part : {&out.q, &out.qdot, &out.v, &out.u}) {
-    part->reshaped() = x.segment(at, part->size());
-    at += part->size();
-  }
-  out.p = x.tail(out.p.size());
+  Eigen::VectorXd out(x.q.size() + x.qdot.size() + x.v.size() + x.tactile.size() +
+                      x.measured.size() + x.u.size() + x.p.size());
+  out << x.q.reshaped(), x.qdot.reshaped(), x.v.reshaped(), x.tactile.reshaped(),
+      x.measured.reshaped(), x.u.reshaped(), x.p;
   return out;
 }
 
