@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "hbar/adjoint/generic_terms.h"
 #include "hbar/core/error.h"
 
 namespace hbar::finger_reach {
@@ -116,45 +117,50 @@ Eigen::MatrixXd FingerMap::jacobian(const Eigen::VectorXd& d) const {
   return J;
 }
 
+Eigen::MatrixXd FingerMap::hessian(const Eigen::VectorXd& d, const Eigen::VectorXd& y) const {
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(6, 6);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Places& place = places_[i];
+    const auto by_l = static_cast<Eigen::Index>(i);
+    const Eigen::Index by_w = by_l + 3;
+    const double l = d[by_l];
+    const double w = d[by_w];
+    const double along = y[place.inertia] / 6.0;
+    const double across = (y[place.inertia + 1] + y[place.inertia + 2]) / 12.0;
+    // m = ρ l w², I_x = ρ l w⁴ / 6, I_y = I_z = ρ (l³ w² + l w⁴) / 12
+    const double ll = across * 6.0 * l * w * w;
+    const double lw = y[place.mass] * 2.0 * w + along * 4.0 * w * w * w +
+                      across * (6.0 * l * l * w + 4.0 * w * w * w);
+    const double ww = y[place.mass] * 2.0 * l + along * 12.0 * l * w * w +
+                      across * (2.0 * l * l * l + 12.0 * l * w * w);
+    const double rho = phalanges_[i].density;
+    H(by_l, by_l) = rho * ll;
+    H(by_l, by_w) = rho * lw;
+    H(by_w, by_l) = rho * lw;
+    H(by_w, by_w) = rho * ww;
+  }
+  return H;
+}
+
 ConstraintPointer slenderness(const std::array<Phalanx, 3>& phalanges, const ParameterSet& set,
                               double ratio) {
   // Row: ratio · width / length ≥ 1, from mass and length; two places each.
-  ConstraintRows rows{{},
-                      Eigen::VectorXd::Ones(3),
-                      Eigen::VectorXd::Constant(3, std::numeric_limits<double>::infinity())};
-  std::vector<PartialPlace> places;
-  for (int i = 0; i < 3; ++i) {
-    const Phalanx& phalanx = phalanges[static_cast<std::size_t>(i)];
-    rows.names.push_back("thickness." + phalanx.body);
-    places.push_back({i, PartialPlace::Field::kP, 0, set.find(body_parameter(phalanx, "mass"))});
-    places.push_back({i, PartialPlace::Field::kP, 0, set.find(joint_x(phalanx))});
+  std::vector<GenericRow> rows;
+  for (const Phalanx& phalanx : phalanges) {
+    const double nominal = phalanx.length;
+    const double density = phalanx.density;
+    rows.push_back({.name = "thickness." + phalanx.body,
+                    .lower = 1.0,
+                    .upper = std::numeric_limits<double>::infinity(),
+                    .places = {{ValueField::kP, 0, set.find(body_parameter(phalanx, "mass"))},
+                               {ValueField::kP, 0, set.find(joint_x(phalanx))}},
+                    .f = [=](auto x) {
+                      using std::sqrt;
+                      const auto length = nominal + x[1];
+                      return ratio * sqrt(x[0] / (density * length * length * length));
+                    }});
   }
-  struct Row {
-    double mass;
-    double length;
-    double value;
-  };
-  const auto row = [=](const TrajectoryValues& values, Eigen::Index i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double mass = values.p[places[2 * k].index];
-    const double length = phalanges[k].length + values.p[places[2 * k + 1].index];
-    return Row{mass, length,
-               ratio * std::sqrt(mass / (phalanges[k].density * length * length * length))};
-  };
-  return user_constraint(
-      rows, places,
-      [row](const TrajectoryValues& values, Eigen::Ref<Eigen::VectorXd> c) {
-        for (Eigen::Index i = 0; i < 3; ++i) {
-          c[i] = row(values, i).value;
-        }
-      },
-      [row](const TrajectoryValues& values, Eigen::Ref<Eigen::VectorXd> partials) {
-        for (Eigen::Index i = 0; i < 3; ++i) {
-          const Row at = row(values, i);
-          partials[2 * i] = 0.5 * at.value / at.mass;
-          partials[2 * i + 1] = -1.5 * at.value / at.length;
-        }
-      });
+  return generic_constraint(std::move(rows));
 }
 
 }  // namespace hbar::finger_reach

@@ -36,6 +36,8 @@ class FingerMap final : public DesignMap {
   [[nodiscard]] Eigen::Index parameter_count() const override { return count_; }
   [[nodiscard]] Eigen::VectorXd parameters(const Eigen::VectorXd& d) const override;
   [[nodiscard]] Eigen::MatrixXd jacobian(const Eigen::VectorXd& d) const override;
+  [[nodiscard]] Eigen::MatrixXd hessian(const Eigen::VectorXd& d,
+                                        const Eigen::VectorXd& y) const override;
 
  private:
   /// Where a phalanx's parameters stand in p.

@@ -43,6 +43,10 @@ class LengthMap final : public DesignMap {
     return base_ + slope_ * (d - nominal_);
   }
   [[nodiscard]] Eigen::MatrixXd jacobian(const Eigen::VectorXd&) const override { return slope_; }
+  [[nodiscard]] Eigen::MatrixXd hessian(const Eigen::VectorXd& d,
+                                        const Eigen::VectorXd&) const override {
+    return Eigen::MatrixXd::Zero(d.size(), d.size());
+  }
 
  private:
   DesignVariables variables_;

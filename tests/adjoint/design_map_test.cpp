@@ -13,8 +13,8 @@ namespace {
 
 using testing::small_model;
 
-/// p = (d₀ d₁, d₀²), with an error in one entry of its Jacobian.
-class Products final : public DesignMap {
+/// p = (d₀ d₁, d₀³), with an error in one entry of its Jacobian.
+class Products : public DesignMap {
  public:
   explicit Products(double error) : error_(error) {
     variables_ = {{"a", "b"},
@@ -27,11 +27,11 @@ class Products final : public DesignMap {
   [[nodiscard]] const DesignVariables& variables() const override { return variables_; }
   [[nodiscard]] Eigen::Index parameter_count() const override { return 2; }
   [[nodiscard]] Eigen::VectorXd parameters(const Eigen::VectorXd& d) const override {
-    return Eigen::Vector2d(d[0] * d[1], d[0] * d[0]);
+    return Eigen::Vector2d(d[0] * d[1], d[0] * d[0] * d[0]);
   }
   [[nodiscard]] Eigen::MatrixXd jacobian(const Eigen::VectorXd& d) const override {
     Eigen::Matrix2d J;
-    J << d[1], d[0] * (1.0 + error_), 2.0 * d[0], 0.0;
+    J << d[1], d[0] * (1.0 + error_), 3.0 * d[0] * d[0], 0.0;
     return J;
   }
 
@@ -39,6 +39,45 @@ class Products final : public DesignMap {
   DesignVariables variables_;
   double error_;
 };
+
+/// The same with a Hessian, which has an error in one entry.
+class CurvedProducts final : public Products {
+ public:
+  explicit CurvedProducts(double error) : Products(0.0), error_(error) {}
+  [[nodiscard]] Eigen::MatrixXd hessian(const Eigen::VectorXd& d,
+                                        const Eigen::VectorXd& y) const override {
+    Eigen::Matrix2d H;
+    H << 6.0 * d[0] * y[1], y[0], y[0], error_;
+    return H;
+  }
+
+ private:
+  double error_;
+};
+
+TEST(CheckDesignMap, ConfirmsARightHessian) {
+  const CurvedProducts map(0.0);
+  const DesignMapCheck check = check_design_map(map, map.variables().start);
+  EXPECT_TRUE(check.has_hessian);
+  EXPECT_LT(check.hessian_gap, 1e-10);
+  EXPECT_NEAR(check.hessian_slope, 2.0, 0.1);
+}
+
+TEST(CheckDesignMap, ConvictsAWrongHessian) {
+  const CurvedProducts map(1e-4);
+  const DesignMapCheck check = check_design_map(map, map.variables().start);
+  EXPECT_GT(check.hessian_gap, 1e-6);
+  EXPECT_EQ(check.hessian_gap_name, "b and b");
+  EXPECT_LT(check.gap, 1e-10);
+  EXPECT_LT(check_design_map(CurvedProducts(5.0), map.variables().start).hessian_slope, 1.5);
+}
+
+TEST(CheckDesignMap, SaysThatAMapHasNoHessian) {
+  const Products map(0.0);
+  EXPECT_FALSE(check_design_map(map, map.variables().start).has_hessian);
+  EXPECT_THROW(static_cast<void>(map.hessian(map.variables().start, Eigen::Vector2d::Ones())),
+               InvalidInput);
+}
 
 TEST(CheckDesignMap, ConfirmsARightJacobian) {
   const Products map(0.0);
@@ -69,7 +108,10 @@ TEST(IdentityDesignMap, IsTheParametersWithTheirBounds) {
   EXPECT_EQ(map.variables().units[3], set[3].unit);
   EXPECT_GT(map.variables().scale.minCoeff(), 0.0);
   EXPECT_EQ(map.parameters(set.nominal()), set.nominal());
-  EXPECT_LT(check_design_map(map, set.nominal()).gap, 1e-9);
+  const DesignMapCheck check = check_design_map(map, set.nominal());
+  EXPECT_LT(check.gap, 1e-9);
+  EXPECT_TRUE(check.has_hessian);
+  EXPECT_EQ(check.hessian_gap, 0.0);
 }
 
 TEST(InertiaChart, StartsAtTheNominalBodyAndIsRight) {
@@ -81,6 +123,8 @@ TEST(InertiaChart, StartsAtTheNominalBodyAndIsRight) {
   const DesignMapCheck check = check_design_map(chart, start);
   EXPECT_LT(check.gap, 1e-9);
   EXPECT_GT(check.slope, 1.9);
+  EXPECT_TRUE(check.has_hessian);
+  EXPECT_EQ(check.hessian_gap, 0.0);
   const int ix = set.find("body.arm.inertia.x");
   EXPECT_EQ(chart.variables().names[static_cast<std::size_t>(ix)], "body.arm.second_moment.x");
 }

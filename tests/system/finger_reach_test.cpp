@@ -35,6 +35,26 @@ TEST(FingerReach, HasAMapWithTheRightJacobian) {
   const DesignMapCheck check = check_design_map(map, d);
   EXPECT_LT(check.gap, 1e-6) << check.gap_name;
   EXPECT_NEAR(check.slope, 2.0, 0.1);
+  EXPECT_TRUE(check.has_hessian);
+  EXPECT_LT(check.hessian_gap, 1e-6) << check.hessian_gap_name;
+  EXPECT_NEAR(check.hessian_slope, 2.0, 0.1);
+}
+
+TEST(FingerReach, HasASlendernessWithExactPartials) {
+  const Model model = scene::build_model(scene::read_scene(kScene));
+  const ParameterSet set = finger_parameters(model);
+  const FingerMap map(phalanges(model), set);
+  Eigen::VectorXd d = map.variables().start;
+  d.head<3>() *= 1.1;
+  TrajectoryValues values;
+  values.p = map.parameters(d);
+  const ConstraintPointer term = slenderness(phalanges(model), set, 4.0);
+  Eigen::VectorXd c(3);
+  term->values(values, c);
+  EXPECT_LT((c - 4.0 * d.tail<3>().cwiseQuotient(d.head<3>())).norm(), 1e-14);
+  const TermCheck check = check_constraint_term(*term, values);
+  EXPECT_TRUE(check.has_second);
+  EXPECT_TRUE(check.passed()) << check.gap_name << ' ' << check.second_gap_name;
 }
 
 TEST(FingerReach, HasRightGradientsAndJacobians) {
