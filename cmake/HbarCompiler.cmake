@@ -56,13 +56,13 @@ endfunction()
 # The headers of every floor are reached as "hbar/FLOOR/file.h", through one include directory.
 set(HBAR_INCLUDE_DIR ${CMAKE_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${HBAR_INCLUDE_DIR}/hbar)
-foreach(floor core scene solvers adjoint)
+foreach(floor core scene solvers adjoint study)
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${floor} ${HBAR_INCLUDE_DIR}/hbar/${floor} SYMBOLIC)
 endforeach()
 
 # An optional part has an export set of its own: who does without it needs none of its dependencies.
 # One that uses another comes after it.
-set(HBAR_OPTIONAL_COMPONENTS umfpack ipopt nlopt suite)
+set(HBAR_OPTIONAL_COMPONENTS umfpack ipopt nlopt suite study)
 
 # hbar_leave_out(NAMES...): what this build goes without. Headers NAME.h are not installed, tests
 # NAME*_test.cpp not compiled.
@@ -105,11 +105,11 @@ function(hbar_add_floor name)
   target_include_directories(hbar_${name} PUBLIC
     $<BUILD_INTERFACE:${HBAR_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(hbar_${name} PRIVATE $<BUILD_INTERFACE:hbar_flags>)
-  if(name MATCHES "^(core|scene|adjoint)$")
+  if(name MATCHES "^(core|scene|adjoint|study)$")
     hbar_compile_in_batches(hbar_${name})
   endif()
   # Eigen takes a third of most files' compilation; it is read once.
-  if(HBAR_PRECOMPILE_HEADERS AND name MATCHES "^(core|scene|solvers|suite|adjoint)$")
+  if(HBAR_PRECOMPILE_HEADERS AND name MATCHES "^(core|scene|solvers|suite|adjoint|study)$")
     if(name STREQUAL "core")
       target_precompile_headers(hbar_core PRIVATE <Eigen/Dense> <functional> <memory> <string>
                                 <variant> <vector>)

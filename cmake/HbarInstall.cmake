@@ -5,7 +5,7 @@ get_property(left_out GLOBAL PROPERTY HBAR_LEFT_OUT)
 foreach(name IN LISTS left_out)
   list(APPEND not_built PATTERN ${name}.h EXCLUDE)
 endforeach()
-foreach(floor core scene solvers adjoint)
+foreach(floor core scene solvers adjoint study)
   if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${floor})
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${floor}/
             DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hbar/${floor}

@@ -20,7 +20,8 @@ cmake -B "$build" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON > "$build/tidy.log" 2>&1 ||
   exit 2
 }
 changed=$(git diff --name-only --diff-filter=d "$base" -- \
-          'core/*.cpp' 'scene/*.cpp' 'solvers/*.cpp' 'contact/*.cpp' 'adjoint/*.cpp' 'examples/*.cpp')
+          'core/*.cpp' 'scene/*.cpp' 'solvers/*.cpp' 'contact/*.cpp' 'adjoint/*.cpp' 'study/*.cpp' \
+          'examples/*.cpp')
 [ -n "$changed" ] || {
   echo "tidy: ok (0 files)"
   exit 0

@@ -10,6 +10,9 @@
 #ifdef STRANGER_HAS_SUITE
 #include "hbar/solvers/solver_suite.h"
 #endif
+#ifdef STRANGER_HAS_STUDY
+#include "hbar/study/many_starts.h"
+#endif
 
 // What a stranger does first: a pendulum in C++ and one from a scene, a simulation, its gradient.
 // Exits with 0 if the gradient is that of central differences, and every solver of the suite, where
@@ -71,6 +74,19 @@ bool solvers_solve() {
 bool solvers_solve() { return true; }
 #endif
 
+#ifdef STRANGER_HAS_STUDY
+bool jobs_run() {
+  const hbar::study::JobReport report =
+      hbar::study::run_jobs({.name = "squares", .count = 5}, [](int index, std::mt19937_64&) {
+        return hbar::study::JobResult{.converged = true,
+                                      .objective = (index - 3.0) * (index - 3.0)};
+      });
+  return report.complete() && report.best() == 3;
+}
+#else
+bool jobs_run() { return true; }
+#endif
+
 }  // namespace
 
 int main() {
@@ -94,6 +110,6 @@ int main() {
   const bool solver_is_there = hbar::solvers::make_klu() != nullptr;
   const bool ok = gradient_is_right(builder.build()) &&
                   gradient_is_right(hbar::scene::build_model(scene)) && solver_is_there &&
-                  solvers_solve();
+                  solvers_solve() && jobs_run();
   return ok ? 0 : 1;
 }
