@@ -89,15 +89,13 @@ Vector6<S> inertial_wrench(const Model& model, const Mechanism<S>& mechanism,
   if (block.kind == ParameterKind::kInertia) {
     return (mechanism.moments(k, link) / value) * wrenches.by_moment[static_cast<std::size_t>(k)];
   }
-  Vector3<Dual> sizes;
+  const Shape& shape = model.link(link).body.shape;
+  const Vector3<S> sizes = mechanism.sizes.col(link);
+  const UnitSolid<S> solid = unit_solid<S>(shape, sizes);
+  const UnitSolid<S> rate = unit_solid_rate<S>(shape, sizes, k);
+  Vector6<S> out = (mechanism.mass[link] * rate.mass / solid.mass) * wrenches.by_mass;
   for (int i = 0; i < 3; ++i) {
-    sizes[i] = {value_of(mechanism.sizes(i, link)), i == k ? 1.0 : 0.0};
-  }
-  const UnitSolid<Dual> solid = unit_solid<Dual>(model.link(link).body.shape, sizes);
-  const auto growth = [](const Dual& x) { return x.slope / x.value; };
-  Vector6<S> out = (mechanism.mass[link] * growth(solid.mass)) * wrenches.by_mass;
-  for (int i = 0; i < 3; ++i) {
-    out += (mechanism.moments(i, link) * growth(solid.moments[i])) *
+    out += (mechanism.moments(i, link) * rate.moments[i] / solid.moments[i]) *
            wrenches.by_moment[static_cast<std::size_t>(i)];
   }
   return out;
@@ -351,10 +349,18 @@ template void add_frame_gradient(const Model&, const Mechanism<double>&, const M
                                  const ParameterSet&, const ParameterBlock&,
                                  const VectorView<double>&, const Vector6<double>&,
                                  Eigen::Ref<VectorX<double>>);
+template void add_frame_gradient(const Model&, const Mechanism<Dual>&, const Motion<Dual>&,
+                                 const ParameterSet&, const ParameterBlock&,
+                                 const VectorView<Dual>&, const Vector6<Dual>&,
+                                 Eigen::Ref<VectorX<Dual>>);
 template void add_parameter_gradient(const Mechanism<double>&, const ParameterSet&,
                                      const VectorView<double>&, const StageResidual<double>&,
                                      const StagePoint<double>&, const VectorView<double>&, double,
                                      Eigen::Ref<VectorX<double>>);
+template void add_parameter_gradient(const Mechanism<Dual>&, const ParameterSet&,
+                                     const VectorView<Dual>&, const StageResidual<Dual>&,
+                                     const StagePoint<Dual>&, const VectorView<Dual>&, double,
+                                     Eigen::Ref<VectorX<Dual>>);
 template void parameter_columns(const Mechanism<double>&, const ParameterSet&,
                                 const VectorView<double>&, const StageResidual<double>&,
                                 const StagePoint<double>&, Eigen::Ref<MatrixX<double>>);

@@ -56,6 +56,57 @@ UnitSolid<S> unit(const NoShape&, const Vector3<S>&) {
   throw InvalidInput("solid_mass_properties: a body without a shape has no volume; give its mass");
 }
 
+template <Scalar S>
+UnitSolid<S> rate(const Cuboid&, const Vector3<S>& size, int k) {
+  const UnitSolid<S> solid = unit<S>(Cuboid{}, size);
+  UnitSolid<S> out{solid.mass / size[k], solid.moments / size[k]};
+  for (int i = 0; i < 3; ++i) {
+    out.moments[i] += i == k ? S(0.0) : S(solid.mass * size[k] / 6.0);
+  }
+  return out;
+}
+
+template <Scalar S>
+UnitSolid<S> rate(const Sphere&, const Vector3<S>& size, int) {
+  const UnitSolid<S> solid = unit<S>(Sphere{}, size);
+  return {3.0 * solid.mass / size[0], (5.0 / size[0]) * solid.moments};
+}
+
+template <Scalar S>
+UnitSolid<S> rate(const Cylinder&, const Vector3<S>& size, int k) {
+  const UnitSolid<S> solid = unit<S>(Cylinder{}, size);
+  const S& across = solid.moments[0];
+  const S& along = solid.moments[2];
+  const S half = 0.5 * solid.mass * size[0];
+  if (k == 0) {
+    const S by_r = 2.0 * across / size[0] + half;
+    return {2.0 * solid.mass / size[0], {by_r, by_r, 4.0 * along / size[0]}};
+  }
+  const S by_length = across / size[1] + solid.mass * size[1] / 6.0;
+  return {solid.mass / size[1], {by_length, by_length, along / size[1]}};
+}
+
+template <Scalar S>
+UnitSolid<S> rate(const Capsule&, const Vector3<S>& size, int k) {
+  const S& r = size[0];
+  const UnitSolid<S> tube = rate<S>(Cylinder{}, size, k);
+  const UnitSolid<S> ball = unit<S>(Sphere{}, size);
+  const S out = 0.5 * size[1] + 0.375 * r;
+  if (k == 1) {
+    const S across = tube.moments.x() + ball.mass * out;
+    return {tube.mass, {across, across, tube.moments.z()}};
+  }
+  const UnitSolid<S> ball_rate = rate<S>(Sphere{}, size, 0);
+  const S across = tube.moments.x() + ball_rate.mass * ((0.4 - 9.0 / 64.0) * r * r + out * out) +
+                   ball.mass * (2.0 * (0.4 - 9.0 / 64.0) * r + 0.75 * out);
+  return {tube.mass + ball_rate.mass, {across, across, tube.moments.z() + ball_rate.moments.z()}};
+}
+
+template <Scalar S>
+UnitSolid<S> rate(const NoShape&, const Vector3<S>& size, int) {
+  return unit<S>(NoShape{}, size);  // says that there is none
+}
+
 std::vector<double> sizes(const NoShape&) { return {}; }
 std::vector<double> sizes(const Cuboid& cuboid) {
   return {cuboid.size.x(), cuboid.size.y(), cuboid.size.z()};
@@ -112,6 +163,35 @@ UnitSolid<S> unit_solid(const Shape& kind, const Vector3<S>& sizes) {
   return std::visit([&sizes](const auto& solid) { return unit<S>(solid, sizes); }, kind);
 }
 
+template <Scalar S>
+UnitSolid<S> unit_solid_rate(const Shape& kind, const Vector3<S>& sizes, int k) {
+  return std::visit([&sizes, k](const auto& solid) { return rate<S>(solid, sizes, k); }, kind);
+}
+
+template <Scalar S>
+Vector3<S> volume_growth(const Shape& kind, const Vector3<S>& sizes) {
+  if (std::holds_alternative<Cuboid>(kind)) {
+    return sizes.cwiseInverse();
+  }
+  if (std::holds_alternative<Sphere>(kind)) {
+    return {3.0 / sizes[0], S(0.0), S(0.0)};
+  }
+  if (std::holds_alternative<Cylinder>(kind)) {
+    return {2.0 / sizes[0], 1.0 / sizes[1], S(0.0)};
+  }
+  if (std::holds_alternative<Capsule>(kind)) {
+    // V = π r² (length + 4/3 r).
+    const S by_length = 1.0 / (sizes[1] + 4.0 / 3.0 * sizes[0]);
+    return {2.0 / sizes[0] + 4.0 / 3.0 * by_length, by_length, S(0.0)};
+  }
+  throw InvalidInput("volume_growth: a body without a shape has no volume");
+}
+
+template Vector3<double> volume_growth(const Shape&, const Vector3<double>&);
+template Vector3<Dual> volume_growth(const Shape&, const Vector3<Dual>&);
+
+template UnitSolid<double> unit_solid_rate(const Shape&, const Vector3<double>&, int);
+template UnitSolid<Dual> unit_solid_rate(const Shape&, const Vector3<Dual>&, int);
 template UnitSolid<double> unit_solid(const Shape&, const Vector3<double>&);
 template UnitSolid<Dual> unit_solid(const Shape&, const Vector3<Dual>&);
 

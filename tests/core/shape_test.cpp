@@ -88,6 +88,47 @@ TEST(EverySolid, HasTheMassAndMomentsOfItsSlices) {
   }
 }
 
+TEST(VolumeGrowth, IsTheRelativeDerivativeOfTheVolume) {
+  for (const SlicedSolid& solid : every_sliced_solid()) {
+    Eigen::Vector3d sizes = Eigen::Vector3d::Zero();
+    for (int k = 0; k < size_count(solid.shape); ++k) {
+      sizes[k] = sizes_of(solid.shape)[static_cast<std::size_t>(k)];
+    }
+    const Eigen::Vector3d growth = volume_growth<double>(solid.shape, sizes);
+    for (int k = 0; k < 3; ++k) {
+      Vector3<Dual> grown = sizes.cast<Dual>();
+      grown[k].slope = 1.0;
+      const Dual volume = unit_solid<Dual>(solid.shape, grown).mass;
+      EXPECT_NEAR(growth[k], volume.slope / volume.value, 1e-14 * growth.norm()) << solid.name;
+    }
+  }
+  EXPECT_NE(message_of<InvalidInput>([] {
+              static_cast<void>(volume_growth<double>(NoShape{}, Eigen::Vector3d::Ones()));
+            }),
+            "");
+}
+
+TEST(EverySolid, GrowsWithItsSizesAsDualNumbersDo) {
+  for (const SlicedSolid& solid : every_sliced_solid()) {
+    const std::vector<double> lengths = sizes_of(solid.shape);
+    for (int k = 0; k < size_count(solid.shape); ++k) {
+      Eigen::Vector3d sizes = Eigen::Vector3d::Zero();
+      Vector3<Dual> moved = Vector3<Dual>::Zero();
+      for (int i = 0; i < size_count(solid.shape); ++i) {
+        sizes[i] = lengths[static_cast<std::size_t>(i)];
+        moved[i] = {sizes[i], i == k ? 1.0 : 0.0};
+      }
+      const UnitSolid<Dual> expected = unit_solid<Dual>(solid.shape, moved);
+      const UnitSolid<double> rate = unit_solid_rate<double>(solid.shape, sizes, k);
+      EXPECT_NEAR(rate.mass, expected.mass.slope, 1e-14 * expected.mass.slope) << solid.name;
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(rate.moments[i], expected.moments[i].slope, 1e-13 * rate.moments.norm())
+            << solid.name << ", size " << k << ", moment " << i;
+      }
+    }
+  }
+}
+
 TEST(SolidMassProperties, RefusesWhatIsNoSolid) {
   const double nan = std::nan("");
   struct Case {

@@ -1,0 +1,334 @@
+#include "hbar/adjoint/second_order.h"
+
+#include <utility>
+
+#include "hbar/core/error.h"
+#include "hbar/core/parameter_derivatives.h"
+
+namespace hbar {
+namespace {
+
+/// value + ε slope, entry by entry.
+void set_dual(const Eigen::Ref<const Eigen::MatrixXd>& value,
+              const Eigen::Ref<const Eigen::MatrixXd>& slope, MatrixX<Dual>& out) {
+  out.resize(value.rows(), value.cols());
+  for (Eigen::Index j = 0; j < value.cols(); ++j) {
+    for (Eigen::Index i = 0; i < value.rows(); ++i) {
+      out(i, j) = {value(i, j), slope(i, j)};
+    }
+  }
+}
+
+VectorX<Dual> dual_vector(const Eigen::VectorXd& value, const Eigen::VectorXd& slope) {
+  VectorX<Dual> out(value.size());
+  for (Eigen::Index i = 0; i < value.size(); ++i) {
+    out[i] = {value[i], slope[i]};
+  }
+  return out;
+}
+
+template <typename Derived>
+void set_slopes(const Eigen::MatrixBase<Derived>& duals, Eigen::Ref<Eigen::VectorXd> out) {
+  for (Eigen::Index i = 0; i < duals.size(); ++i) {
+    out[i] = duals[i].slope;
+  }
+}
+
+void set_slope(VectorX<Dual>& duals, const Eigen::VectorXd& slope) {
+  for (Eigen::Index i = 0; i < duals.size(); ++i) {
+    duals[i].slope = slope[i];
+  }
+}
+
+void require_shape(const Inputs& direction, const Inputs& inputs) {
+  const auto same = [](const auto& a, const auto& b) {
+    return a.rows() == b.rows() && a.cols() == b.cols();
+  };
+  if (!same(direction.p, inputs.p) || !same(direction.u, inputs.u) ||
+      !same(direction.q0, inputs.q0) || !same(direction.qdot0, inputs.qdot0)) {
+    throw InvalidInput(concat("second order: the direction has ", direction.p.size(),
+                              " parameters, ", direction.u.rows(), " x ", direction.u.cols(),
+                              " controls and ", direction.q0.size(), " + ", direction.qdot0.size(),
+                              " initial values; expected ", inputs.p.size(), ", ", inputs.u.rows(),
+                              " x ", inputs.u.cols(), ", ", inputs.q0.size(), " + ",
+                              inputs.qdot0.size()));
+  }
+}
+
+}  // namespace
+
+struct SecondOrderSweep::Workspace {
+  explicit Workspace(Simulator& s)
+      : simulator(s),
+        adjoint(s),
+        mechanism(nominal_mechanism<double>(s.model())),
+        stage(s.model()),
+        point(s.model()),
+        block(s.model().dof(), s.model().dof()),
+        g(s.model().dof()),
+        history(s.model()),
+        mechanism_d(nominal_mechanism<Dual>(s.model())),
+        stage_d(s.model()),
+        point_d(s.model()),
+        motion_d(s.model().tree()),
+        end_effectors(s.model()),
+        tactile(s.model()),
+        g_d(s.model().dof()),
+        zeros_d(VectorX<Dual>::Zero(s.model().dof())),
+        qdot_past(s.model().dof()),
+        a_past(s.model().dof()),
+        y_start{VectorX<Dual>(s.model().dof()), VectorX<Dual>(s.model().dof())},
+        delta(s.model().dof()) {}
+
+  [[nodiscard]] const Trajectory& trajectory() const { return *trajectory_; }
+  void factorize();
+  void set_stage(int s);
+  void read_values(int k);
+  void add_outputs(int k, MatrixX<Dual>& q_bar, MatrixX<Dual>& qdot_bar, VectorX<Dual>& p_bar);
+  void solve_adjoint(int s);
+  void sweep_stage(int s);
+  [[nodiscard]] bool has_outputs() const {
+    return simulator.model().variable_count() + simulator.model().tactile_count() > 0;
+  }
+
+  Simulator& simulator;
+  AdjointSweep adjoint;
+  const Trajectory* trajectory_ = nullptr;
+  TrajectoryPartials weights{TrajectoryValues{}};
+  Gradient gradient;
+  Mechanism<double> mechanism;
+  StageResidual<double> stage;
+  StagePoint<double> point;
+  Eigen::MatrixXd block;
+  Eigen::VectorXd g;
+  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factors;  // of H_ss, per stage
+
+  History history;
+  Mechanism<Dual> mechanism_d;
+  StageResidual<Dual> stage_d;
+  StagePoint<Dual> point_d;
+  Motion<Dual> motion_d;
+  EndEffectors<Dual> end_effectors;
+  TactileReadings<Dual> tactile;
+  VectorX<Dual> p_d;
+  MatrixX<Dual> u_d, q_d, qdot_d;  // per step; per stage
+  VectorX<Dual> g_d, zeros_d, qdot_past, a_past, y, z, y_qdot, y_a, reading;
+  StepStart<Dual> y_start;
+  Eigen::VectorXd delta;
+  ValueTangent tangent;
+  MatrixX<Dual> v_weights, tactile_weights, q_bar, qdot_bar, u_bar;
+  VectorX<Dual> p_bar;
+  Gradient out;
+};
+
+/// Factors of every stage's block at the trajectory itself, so that no solve needs refinement.
+void SecondOrderSweep::Workspace::factorize() {
+  const int last = trajectory().timeline.last_stage();
+  factors.resize(static_cast<std::size_t>(last) + 1);
+  apply_parameters<double>(simulator.model(), simulator.parameters(), trajectory().inputs.p,
+                           mechanism);
+  for (int s = 1; s <= last; ++s) {
+    simulator.set_point(trajectory(), s, point);
+    stage.linearize(mechanism, point, g);
+    stage.newton_matrix(block);
+    factors[static_cast<std::size_t>(s)].compute(block);
+  }
+}
+
+/// The stage's point with the slopes that are known so far.
+void SecondOrderSweep::Workspace::set_stage(int s) {
+  const Stage& row = trajectory().timeline.stage(s);
+  history.gather<Dual>(trajectory(), q_d, qdot_d, s, qdot_past, a_past, point_d.start);
+  point_d.rate = row.rate;
+  point_d.u = u_d.col(row.step);
+  point_d.q = q_d.col(s);
+  History::set_rates<Dual>(qdot_past, a_past, point_d);
+}
+
+/// Slopes of the values at step k.
+void SecondOrderSweep::Workspace::read_values(int k) {
+  const int s = trajectory().timeline.step_end(k);
+  set_slopes(q_d.col(s), tangent.q.col(k));
+  set_slopes(qdot_d.col(s), tangent.qdot.col(k));
+  if (!has_outputs()) {
+    return;
+  }
+  compute_motion<Dual>(simulator.model().tree(), mechanism_d, q_d.col(s), qdot_d.col(s), zeros_d,
+                       motion_d);
+  reading.resize(tangent.v.rows());
+  end_effectors.positions(motion_d, reading);
+  set_slopes(reading, tangent.v.col(k));
+  reading.resize(tangent.tactile.rows());
+  tactile.readings(mechanism_d, motion_d, reading);
+  set_slopes(reading, tangent.tactile.col(k));
+}
+
+void SecondOrderSweep::Workspace::add_outputs(int k, MatrixX<Dual>& by_q, MatrixX<Dual>& by_qdot,
+                                              VectorX<Dual>& by_p) {
+  if (!has_outputs()) {
+    return;
+  }
+  const int s = trajectory().timeline.step_end(k);
+  const ParameterSet& set = simulator.parameters();
+  compute_motion<Dual>(simulator.model().tree(), mechanism_d, q_d.col(s), qdot_d.col(s), zeros_d,
+                       motion_d);
+  end_effectors.pull_back(mechanism_d, set, p_d, motion_d, v_weights.col(k), by_q.col(s), by_p);
+  tactile.pull_back(mechanism_d, set, p_d, motion_d, tactile_weights.col(k), by_q.col(s),
+                    by_qdot.col(s), by_p);
+}
+
+/// δz of H_ssᵀ δz = δy − (δH_ss)ᵀ z.
+void SecondOrderSweep::Workspace::solve_adjoint(int s) {
+  const double rate = point_d.rate;
+  stage_d.pull_back(z);
+  for (Eigen::Index i = 0; i < delta.size(); ++i) {
+    delta[i] =
+        (y[i] - stage_d.by_q()[i] - rate * stage_d.by_qdot()[i] - (rate * rate) * stage_d.by_a()[i])
+            .slope;
+  }
+  delta = factors[static_cast<std::size_t>(s)].transpose().solve(delta).eval();
+  set_slope(z, delta);
+  stage_d.pull_back(z);
+}
+
+void SecondOrderSweep::Workspace::sweep_stage(int s) {
+  set_stage(s);
+  stage_d.linearize(mechanism_d, point_d, g_d);
+  const double rate = point_d.rate;
+  y = q_bar.col(s) + rate * qdot_bar.col(s);
+  z = adjoint.adjoint().col(s - 1).cast<Dual>();
+  solve_adjoint(s);
+  const JointForces<Dual>& forces = stage_d.joint_forces();
+  const double c = point_d.c();
+  y_a = -stage_d.by_a();
+  y_qdot = qdot_bar.col(s) - stage_d.by_qdot() + rate * y_a;
+  y_start.q = c * z.cwiseProduct(forces.by_start_q);
+  y_start.qdot = c * z.cwiseProduct(forces.by_start_qdot);
+  history.scatter<Dual>(trajectory(), q_d, qdot_d, s, y_qdot, y_a, y_start, q_bar, qdot_bar);
+  const Model& model = simulator.model();
+  const int step = trajectory().timeline.stage(s).step;
+  for (int m = 0; m < static_cast<int>(model.motors().size()); ++m) {
+    const int first = model.first_control(m);
+    const CoordinateRange range =
+        model.coordinates_of_link(model.motors()[static_cast<std::size_t>(m)].link);
+    for (int k = range.begin; k < range.end; ++k) {
+      const int control = first + k - range.begin;
+      u_bar(control, step) += c * z[k] * forces.by_u[control];
+    }
+  }
+  add_parameter_gradient<Dual>(mechanism_d, simulator.parameters(), p_d, stage_d, point_d, z, -1.0,
+                               p_bar);
+}
+
+SecondOrderSweep::SecondOrderSweep(Simulator& simulator)
+    : work_(std::make_unique<Workspace>(simulator)) {}
+SecondOrderSweep::~SecondOrderSweep() = default;
+SecondOrderSweep::SecondOrderSweep(SecondOrderSweep&&) noexcept = default;
+SecondOrderSweep& SecondOrderSweep::operator=(SecondOrderSweep&&) noexcept = default;
+
+const Gradient& SecondOrderSweep::set_point(const Trajectory& trajectory,
+                                            const TrajectoryPartials& weights) {
+  Workspace& w = *work_;
+  w.trajectory_ = &trajectory;
+  w.weights = weights;
+  w.gradient = w.adjoint.pull_back(trajectory, weights);
+  w.factorize();
+  return w.gradient;
+}
+
+const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
+  Workspace& w = *work_;
+  const Trajectory& trajectory = w.trajectory();
+  require_shape(direction, trajectory.inputs);
+  w.p_d = dual_vector(trajectory.inputs.p, direction.p);
+  apply_parameters<Dual>(w.simulator.model(), w.simulator.parameters(), w.p_d, w.mechanism_d);
+  set_dual(trajectory.inputs.u, direction.u, w.u_d);
+  w.q_d = trajectory.q.cast<Dual>();
+  w.qdot_d = trajectory.qdot.cast<Dual>();
+  w.q_d.col(0) = dual_vector(trajectory.q.col(0), direction.q0);
+  w.qdot_d.col(0) = dual_vector(trajectory.qdot.col(0), direction.qdot0);
+  for (int s = 1; s <= trajectory.timeline.last_stage(); ++s) {
+    w.set_stage(s);
+    w.stage_d.residual(w.mechanism_d, w.point_d, w.g_d);
+    set_slopes(w.g_d, w.delta);
+    w.delta = -w.factors[static_cast<std::size_t>(s)].solve(w.delta).eval();
+    for (Eigen::Index i = 0; i < w.delta.size(); ++i) {
+      w.q_d(i, s).slope = w.delta[i];
+    }
+    w.point_d.q = w.q_d.col(s);
+    History::set_rates<Dual>(w.qdot_past, w.a_past, w.point_d);
+    w.qdot_d.col(s) = w.point_d.qdot;
+  }
+  const int steps = trajectory.step_count();
+  const Model& model = w.simulator.model();
+  w.tangent.q.resize(model.dof(), steps + 1);
+  w.tangent.qdot.resize(model.dof(), steps + 1);
+  w.tangent.v.resize(model.variable_count(), steps + 1);
+  w.tangent.tactile.resize(model.tactile_count(), steps + 1);
+  w.tangent.measured.resize(0, steps + 1);
+  w.tangent.u = direction.u;
+  w.tangent.p = direction.p;
+  for (int k = 0; k <= steps; ++k) {
+    w.read_values(k);
+  }
+  return w.tangent;
+}
+
+const Gradient& SecondOrderSweep::product(const TrajectoryPartials* weights_tangent) {
+  Workspace& w = *work_;
+  const Trajectory& trajectory = w.trajectory();
+  const TrajectoryPartials& y = w.weights;
+  const TrajectoryPartials still(w.tangent);
+  const TrajectoryPartials& dy = weights_tangent != nullptr ? *weights_tangent : still;
+  const Timeline& timeline = trajectory.timeline;
+  w.q_bar.setZero(trajectory.q.rows(), timeline.stage_count());
+  w.qdot_bar.setZero(trajectory.q.rows(), timeline.stage_count());
+  for (int k = 0; k <= timeline.step_count(); ++k) {
+    const int s = timeline.step_end(k);
+    w.q_bar.col(s) += dual_vector(y.q.col(k), dy.q.col(k));
+    w.qdot_bar.col(s) += dual_vector(y.qdot.col(k), dy.qdot.col(k));
+  }
+  set_dual(y.v, dy.v, w.v_weights);
+  set_dual(y.tactile, dy.tactile, w.tactile_weights);
+  set_dual(y.u, dy.u, w.u_bar);
+  w.p_bar = dual_vector(y.p, dy.p);
+  int k = timeline.step_count();
+  for (int s = timeline.last_stage(); s > 0; --s) {
+    if (s == timeline.step_end(k)) {
+      w.add_outputs(k, w.q_bar, w.qdot_bar, w.p_bar);
+      --k;
+    }
+    w.sweep_stage(s);
+  }
+  w.add_outputs(0, w.q_bar, w.qdot_bar, w.p_bar);
+  const auto slope = [](const Dual& d) { return d.slope; };
+  w.out.p = w.p_bar.unaryExpr(slope);
+  w.out.u = w.u_bar.unaryExpr(slope);
+  w.out.q0 = w.q_bar.col(0).unaryExpr(slope);
+  w.out.qdot0 = w.qdot_bar.col(0).unaryExpr(slope);
+  return w.out;
+}
+
+HessianProduct::HessianProduct(Simulator& simulator, Objective objective)
+    : simulator_(simulator), objective_(std::move(objective)), sweep_(simulator) {}
+
+const Gradient& HessianProduct::set_point(const Trajectory& trajectory) {
+  values_ = simulator_.values(trajectory);
+  places_ = objective_.second_places(values_);
+  second_ = objective_.second_partials(values_);
+  gradient_ = sweep_.set_point(trajectory, objective_.partials(values_));
+  gradient_.value = objective_.value(values_);
+  return gradient_;
+}
+
+const Gradient& HessianProduct::along(const Inputs& direction) {
+  const ValueTangent& tangent = sweep_.push_forward(direction);
+  TrajectoryPartials moved(values_);
+  add_second_order(places_, second_, tangent, moved);
+  product_ = sweep_.product(&moved);
+  product_.value = 0.5 * (product_.p.dot(direction.p) + product_.u.cwiseProduct(direction.u).sum() +
+                          product_.q0.dot(direction.q0) + product_.qdot0.dot(direction.qdot0));
+  return product_;
+}
+
+}  // namespace hbar
