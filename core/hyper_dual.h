@@ -86,7 +86,9 @@ struct HyperDual {
 }
 /// a > 0.
 [[nodiscard]] inline HyperDual pow(const HyperDual& a, const HyperDual& b) {
-  return exp(b * log(a));
+  HyperDual power = exp(b * log(a));
+  power.value = std::pow(a.value, b.value);  // as the rounding of doubles has it
+  return power;
 }
 [[nodiscard]] inline HyperDual atan2(const HyperDual& y, const HyperDual& x) {
   // ∂/∂y = x / r², ∂/∂x = −y / r²; ∂²/∂y² = −2 x y / r⁴ = −∂²/∂x², ∂²/∂x∂y = (y² − x²) / r⁴

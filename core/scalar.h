@@ -76,7 +76,10 @@ struct Dual {
   return {std::pow(a.value, n), n == 0.0 ? 0.0 : a.slope * n * std::pow(a.value, n - 1.0)};
 }
 /// a > 0.
-[[nodiscard]] inline Dual pow(const Dual& a, const Dual& b) { return exp(b * log(a)); }
+[[nodiscard]] inline Dual pow(const Dual& a, const Dual& b) {
+  const double power = std::pow(a.value, b.value);
+  return {power, power * (b.slope * std::log(a.value) + b.value * a.slope / a.value)};
+}
 [[nodiscard]] inline Dual atan2(const Dual& y, const Dual& x) {
   const double square = x.value * x.value + y.value * y.value;
   return {std::atan2(y.value, x.value), (x.value * y.slope - y.value * x.slope) / square};

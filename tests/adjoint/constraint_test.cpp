@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "hbar/adjoint/check_terms.h"
 #include "hbar/core/error.h"
 #include "tests/adjoint/small_problems.h"
 #include "tests/support/numerics.h"
@@ -27,40 +28,15 @@ TrajectoryValues numbered(const Model& model, const ParameterSet& set, int steps
   out.v = fill(model.variable_count(), steps + 1, 3.0);
   out.u = fill(model.control_count(), steps, 4.0);
   out.p = set.nominal();
+  out.measured = fill(2, steps + 1, 5.0);
   return out;
 }
 
-double& number_at(TrajectoryValues& values, const PartialPlace& place) {
-  switch (place.field) {
-    case Field::kQ:
-      return values.q(place.index, place.step);
-    case Field::kQdot:
-      return values.qdot(place.index, place.step);
-    case Field::kV:
-      return values.v(place.index, place.step);
-    case Field::kU:
-      return values.u(place.index, place.step);
-    case Field::kP:
-      break;
-  }
-  return values.p[place.index];
-}
-
-/// Every place's partial against a central difference of its row.
 void expect_right_partials(const ConstraintTerm& term, const TrajectoryValues& at) {
-  Eigen::VectorXd partials(static_cast<Eigen::Index>(term.places().size()));
-  term.partials(at, partials);
-  for (std::size_t k = 0; k < term.places().size(); ++k) {
-    const PartialPlace& place = term.places()[k];
-    Eigen::VectorXd a(term.rows().size());
-    Eigen::VectorXd b(term.rows().size());
-    TrajectoryValues moved = at;
-    number_at(moved, place) += 1e-5;
-    term.values(moved, a);
-    number_at(moved, place) -= 2e-5;
-    term.values(moved, b);
-    EXPECT_NEAR(partials[static_cast<Eigen::Index>(k)], (a - b)[place.row] / 2e-5, 1e-8);
-  }
+  const TermCheck check = check_constraint_term(term, at);
+  EXPECT_LT(check.gap, 1e-10) << check.gap_name;
+  EXPECT_TRUE(check.has_second);
+  EXPECT_TRUE(check.passed()) << check.second_gap_name << ' ' << check.slope;
 }
 
 class Constraint : public ::testing::Test {
@@ -115,18 +91,72 @@ TEST_F(Constraint, OnParametersIsAWeightedSum) {
   expect_right_partials(*parameter_sum(set_, "mass", names, -kInfinity, 2.0), values_);
 }
 
-TEST_F(Constraint, OfOnesOwnIsTakenAtItsWord) {
+TEST_F(Constraint, ThatIsLinearIsAnyWeightedSumOfNumbers) {
+  const ConstraintRows rows{{"a", "b"}, Eigen::Vector2d::Zero(), Eigen::Vector2d::Ones()};
+  const ConstraintPointer term = linear_constraint(
+      rows, {{1, Field::kMeasured, 3, 1}, {0, Field::kU, 2, 0}, {1, Field::kTactile, 3, 0}},
+      Eigen::Vector3d(2.0, -1.0, 0.5), Eigen::Vector2d(0.0, 7.0));
+  values_.tactile = Eigen::MatrixXd::Constant(1, 6, 4.0);
+  Eigen::VectorXd c(2);
+  term->values(values_, c);
+  EXPECT_DOUBLE_EQ(c[0], -values_.u(0, 2));
+  EXPECT_DOUBLE_EQ(c[1], 7.0 + 2.0 * values_.measured(1, 3) + 2.0);
+  expect_right_partials(*term, values_);
+  EXPECT_TRUE(term->second_places().empty());
+  EXPECT_THROW(static_cast<void>(linear_constraint(rows, {}, Eigen::VectorXd::Ones(1))),
+               InvalidInput);
+  EXPECT_THROW(
+      static_cast<void>(linear_constraint(rows, {{0, Field::kU, 2, 0}}, Eigen::VectorXd::Ones(1),
+                                          Eigen::VectorXd::Ones(3))),
+      InvalidInput);
+}
+
+TEST_F(Constraint, ThatReadsANumberThatIsNotThereSaysWhich) {
+  const ConstraintRows rows{{"a"}, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)};
+  const ConstraintPointer term =
+      linear_constraint(rows, {{0, Field::kMeasured, 3, 2}}, Eigen::VectorXd::Ones(1));
+  Eigen::VectorXd c(1);
+  EXPECT_EQ(testing::message_of<InvalidInput>([&] { term->values(values_, c); }),
+            "there is no measured 2 at step 3: measured is 2 x 6");
+}
+
+/// u q̇ ≤ 1 written by hand.
+ConstraintPointer hand_written_power(std::optional<RowSecondPartials> second) {
   const ConstraintRows rows{
       {"power"}, Eigen::VectorXd::Constant(1, -1.0), Eigen::VectorXd::Constant(1, 1.0)};
-  const ConstraintPointer term = user_constraint(
+  return user_constraint(
       rows, {{0, Field::kU, 2, 0}, {0, Field::kQdot, 3, 6}},
       [](const TrajectoryValues& values, Eigen::Ref<Eigen::VectorXd> c) {
         c[0] = values.u(0, 2) * values.qdot(6, 3);
       },
       [](const TrajectoryValues& values, Eigen::Ref<Eigen::VectorXd> partials) {
         partials << values.qdot(6, 3), values.u(0, 2);
-      });
-  expect_right_partials(*term, values_);
+      },
+      std::move(second));
+}
+
+TEST_F(Constraint, OfOnesOwnIsTakenAtItsWord) {
+  const RowSecondPartials second{
+      {{0, {Field::kU, 2, 0}, {Field::kQdot, 3, 6}}},
+      [](const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd> out) { out[0] = 1.0; }};
+  expect_right_partials(*hand_written_power(second), values_);
+  const ConstraintPointer linear = hand_written_power(RowSecondPartials::of_linear_rows());
+  EXPECT_TRUE(linear->second_places().empty());
+  EXPECT_FALSE(check_constraint_term(*linear, values_).passed());
+}
+
+TEST_F(Constraint, OfOnesOwnWithoutSecondPartialsSaysWhatToDo) {
+  const ConstraintPointer term = hand_written_power(std::nullopt);
+  EXPECT_EQ(testing::message_of<InvalidInput>([&] { static_cast<void>(term->second_places()); }),
+            "constraint 'power' has no second partials; give user_constraint its second places "
+            "and partials (or say that the rows are linear), write it as a generic_constraint, or "
+            "use the limited-memory Hessian");
+  EXPECT_FALSE(check_constraint_term(*term, values_).has_second);
+  const SecondPlace place{1, {Field::kU, 2, 0}, {Field::kU, 2, 0}};
+  EXPECT_THROW(static_cast<void>(hand_written_power(RowSecondPartials{{place}, {}})), InvalidInput);
+  EXPECT_THROW(static_cast<void>(hand_written_power(RowSecondPartials{
+                   {place}, [](const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>) {}})),
+               InvalidInput);
 }
 
 TEST_F(Constraint, RefusesWhatMakesNoSense) {

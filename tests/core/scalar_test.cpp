@@ -33,7 +33,11 @@ Operation operation(std::string name, Formula formula) {
 
 std::vector<Operation> every_operation() {
   using std::abs;
+  using std::atan2;
   using std::cos;
+  using std::exp;
+  using std::log;
+  using std::pow;
   using std::sin;
   using std::sqrt;
   return {
@@ -57,6 +61,12 @@ std::vector<Operation> every_operation() {
       operation("sin a", [](auto a, auto) { return sin(a); }),
       operation("cos a", [](auto a, auto) { return cos(a); }),
       operation("abs a", [](auto a, auto) { return abs(a); }),
+      operation("exp a", [](auto a, auto) { return exp(a); }),
+      operation("log a", [](auto a, auto) { return log(a * a + 1.0); }),
+      operation("a to the 3", [](auto a, auto) { return pow(a, 3.0); }),
+      operation("a to the -1.5", [](auto a, auto) { return pow(a * a + 1.0, -1.5); }),
+      operation("a to the b", [](auto a, auto b) { return pow(a * a + 1.0, b); }),
+      operation("atan2", [](auto a, auto b) { return atan2(a, b); }),
       operation("a formula", [](auto a, auto b) { return sin(a * b) / sqrt(b * b) - cos(a) * b; }),
   };
 }

@@ -7,6 +7,7 @@
 #include "examples/common/progress.h"
 #include "examples/finger_reach/reach.h"
 #include "examples/finger_reach/report.h"
+#include "hbar/adjoint/check_terms.h"
 #include "hbar/core/error.h"
 #include "hbar/scene/build_model.h"
 #include "hbar/scene/read_xml.h"
