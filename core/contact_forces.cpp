@@ -96,9 +96,7 @@ void ContactForces<S>::begin(const Mechanism<S>& mechanism, const Motion<S>& mot
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     wrenches_[i].setZero();
     if (takes_part_[i] != 0) {
-      const NodeMotion<S>& joint = motion.at(model_.node_of_link(static_cast<int>(i)));
-      bodies_[i].X_WB = RigidTransform<S>{joint.R, joint.p} * mechanism.X_JB[i];
-      bodies_[i].V = joint.V;
+      bodies_[i] = body_motion<S>(model_, mechanism, motion, static_cast<int>(i));
     }
   }
   active_ = 0;

@@ -3,7 +3,6 @@
 #include <span>
 
 #include "hbar/core/contact_pair.h"
-#include "hbar/core/motion.h"
 
 namespace hbar {
 
@@ -14,18 +13,6 @@ struct ContactSummary {
   double penetration = 0.0;     ///< of the deepest point, length, ≥ 0
   double normal_force = 0.0;    ///< Σ f_n
   double friction_force = 0.0;  ///< Σ |friction|
-};
-
-/// Covectors on bodies: how a scalar answers to displacing a link's body and to its twist, both in
-/// the world frame.
-template <Scalar S>
-struct LinkCovectors {
-  explicit LinkCovectors(int links)
-      : by_displacement(static_cast<std::size_t>(links)),
-        by_twist(static_cast<std::size_t>(links)) {}
-
-  std::vector<Vector6<S>> by_displacement;  ///< per link                                   [6]
-  std::vector<Vector6<S>> by_twist;         ///< per link                                   [6]
 };
 
 /// A contact whose points touch, with its derivatives.

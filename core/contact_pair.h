@@ -1,20 +1,13 @@
 #pragma once
 
+#include "hbar/core/body_motion.h"
 #include "hbar/core/contact_law.h"
-#include "hbar/core/spatial.h"
 #include "hbar/core/surface_distance.h"
 
 namespace hbar {
 
 template <Scalar S>
 using Matrix6 = Eigen::Matrix<S, 6, 6>;
-
-/// How a body moves, as contact reads it: in the world frame, twists at its origin.
-template <Scalar S>
-struct BodyMotion {
-  RigidTransform<S> X_WB = {};        ///< body frame in the world
-  Vector6<S> V = Vector6<S>::Zero();  ///< twist, zero for the world                [6]
-};
 
 /// The two bodies of a contact at one instant, A with the points and B with the distance.
 template <Scalar S>

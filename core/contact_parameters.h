@@ -6,14 +6,15 @@
 
 namespace hbar {
 
-/// Visits how contact wrenches change with a set's parameters at fixed motion, after
+/// Visits how touching points change with a set's parameters at fixed motion, after
 /// contacts.linearize: contact points (III), contact scale (VI), coefficients and sizes.
 ///
-/// @param visit  visit(index in p, contact, PairWrenches): one share of ∂(wrenches)/∂p; a
-///               parameter may be visited any number of times, and what touches nothing is not
+/// @param visit  visit(index in p, ActivePair, TouchingPoint, PointChange): one share of
+///               ∂(point)/∂p; a parameter may be visited any number of times, and what touches
+///               nothing is not
 template <Scalar S, typename Visit>
-void for_each_contact_change(const ContactForces<S>& contacts, const Mechanism<S>& mechanism,
-                             const ParameterSet& set, const Visit& visit) {
+void for_each_point_change(const ContactForces<S>& contacts, const Mechanism<S>& mechanism,
+                           const ParameterSet& set, const Visit& visit) {
   const Model& model = contacts.model();
   for (const ActivePair<S>& pair : contacts.active()) {
     const Contact& contact = model.contact(pair.contact);
@@ -25,7 +26,7 @@ void for_each_contact_change(const ContactForces<S>& contacts, const Mechanism<S
     const int size_owner = std::max(contact.other, 0);
     const SurfaceDistance<S> surface(contact.surface, other, mechanism.sizes.col(size_owner));
     const auto changes = [&](int index, const TouchingPoint<S>& point, const PointChange<S>& by) {
-      visit(index, pair.contact, wrench_change<S>(contact.reaction, pair.motion, point, by));
+      visit(index, pair, point, by);
     };
     const int scale = set.index(ParameterKind::kContactScale, contact.link, 0);
     std::array<int, 4> coefficients = {};
@@ -81,6 +82,21 @@ void for_each_contact_change(const ContactForces<S>& contacts, const Mechanism<S
       }
     }
   }
+}
+
+/// The same of contact wrenches.
+///
+/// @param visit  visit(index in p, contact, PairWrenches): one share of ∂(wrenches)/∂p
+template <Scalar S, typename Visit>
+void for_each_contact_change(const ContactForces<S>& contacts, const Mechanism<S>& mechanism,
+                             const ParameterSet& set, const Visit& visit) {
+  for_each_point_change(contacts, mechanism, set,
+                        [&](int index, const ActivePair<S>& pair, const TouchingPoint<S>& point,
+                            const PointChange<S>& by) {
+                          const Contact& contact = contacts.model().contact(pair.contact);
+                          visit(index, pair.contact,
+                                wrench_change<S>(contact.reaction, pair.motion, point, by));
+                        });
 }
 
 }  // namespace hbar

@@ -1,12 +1,9 @@
 #include "hbar/core/end_effectors.h"
 
-#include "hbar/core/parameter_derivatives.h"
-
 namespace hbar {
 
 template <Scalar S>
-EndEffectors<S>::EndEffectors(const Model& model)
-    : model_(model), wrenches_(static_cast<std::size_t>(model.tree().node_count())) {}
+EndEffectors<S>::EndEffectors(const Model& model) : model_(model), links_(model) {}
 
 template <Scalar S>
 Vector3<S> EndEffectors<S>::position(const Motion<S>& motion, std::size_t i) const {
@@ -27,31 +24,15 @@ void EndEffectors<S>::pull_back(const Mechanism<S>& mechanism, const ParameterSe
                                 const VectorView<S>& p, const Motion<S>& motion,
                                 const VectorView<S>& y, Eigen::Ref<VectorX<S>> by_q,
                                 Eigen::Ref<VectorX<S>> grad_p) {
-  const Tree& tree = model_.tree();
-  for (Vector6<S>& wrench : wrenches_) {
-    wrench.setZero();
-  }
+  links_.clear();
   for (std::size_t i = 0; i < model_.end_effectors().size(); ++i) {
     const Vector3<S> force = y.template segment<3>(3 * static_cast<Eigen::Index>(i));
-    const auto node = static_cast<std::size_t>(model_.node_of_link(model_.end_effectors()[i].link));
-    wrenches_[node] += spatial<S>(position(motion, i).cross(force), force);
+    links_.add_to_joint(model_.end_effectors()[i].link,
+                        spatial<S>(position(motion, i).cross(force), force));
   }
-  for (int i = tree.node_count(); i-- > 0;) {
-    const Node& node = tree.node(i);
-    const Vector6<S>& wrench = wrenches_[static_cast<std::size_t>(i)];
-    for (int c = node.coordinates.begin; c < node.coordinates.end; ++c) {
-      by_q[c] += motion.J.col(c).dot(wrench);
-    }
-    if (node.parent >= 0) {
-      wrenches_[static_cast<std::size_t>(node.parent)] += wrench;
-    }
-  }
-  for (const ParameterBlock& block : set.blocks()) {
-    if (block.kind == ParameterKind::kJointTransform) {
-      const auto first = static_cast<std::size_t>(first_node_of_link(model_, block.owner));
-      add_frame_gradient<S>(model_, mechanism, motion, set, block, p, wrenches_[first], grad_p);
-    }
-  }
+  links_.sum();
+  links_.add_coordinates(motion, by_q);
+  links_.add_frames(mechanism, set, p, motion, grad_p);
 }
 
 template <Scalar S>
@@ -79,5 +60,6 @@ void EndEffectors<S>::jacobian(const Motion<S>& motion, Eigen::Ref<MatrixX<S>> d
 }
 
 template class EndEffectors<double>;
+template class EndEffectors<Dual>;
 
 }  // namespace hbar

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "hbar/core/motion.h"
-#include "hbar/core/parameters.h"
+#include "hbar/core/link_pullback.h"
 
 namespace hbar {
 
@@ -34,7 +33,7 @@ class EndEffectors {
   [[nodiscard]] Vector3<S> position(const Motion<S>& motion, std::size_t i) const;
 
   const Model& model_;
-  std::vector<Vector6<S>> wrenches_;  // per node, summed over its subtree
+  LinkPullback<S> links_;
 };
 
 }  // namespace hbar

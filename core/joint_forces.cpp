@@ -31,34 +31,38 @@ void add_passive(const Model& model, const Mechanism<S>& mechanism, const Vector
 }
 
 template <Scalar S>
-void drive_by_force(const Motor& motor, int c, int i, const S& u, JointForces<S>& forces) {
+MotorForce<S> drive_by_force(const Motor& motor, const S& u) {
+  MotorForce<S> out;
   if (!std::isfinite(motor.lower)) {
-    forces.tau[c] += u;
-    forces.by_u[i] = 1.0;
-    return;
+    out.tau = u;
+    out.by_u = S(1.0);
+    return out;
   }
   const double half = 0.5 * (motor.upper - motor.lower);
   const double middle = 0.5 * (motor.upper + motor.lower);
   const bool inside = u >= -1.0 && u <= 1.0;
   const S clamped = inside ? u : S(u < -1.0 ? -1.0 : 1.0);
-  forces.tau[c] += middle + half * clamped;
-  forces.by_u[i] = inside ? half : 0.0;
+  out.tau = middle + half * clamped;
+  out.by_u = S(inside ? half : 0.0);
+  return out;
 }
 
 template <Scalar S>
-void drive_to_position(const Motor& motor, const S& P, const S& D, int c, int i, const S& u,
-                       const S& q, const S& qdot, JointForces<S>& forces) {
+MotorForce<S> drive_to_position(const Motor& motor, const S& P, const S& D, const S& u, const S& q,
+                                const S& qdot) {
+  MotorForce<S> out;
   const S wanted = P * (u - q) - D * qdot;
   if (wanted < motor.lower || wanted > motor.upper) {
-    forces.tau[c] += wanted < motor.lower ? motor.lower : motor.upper;
-    return;
+    out.tau = S(wanted < motor.lower ? motor.lower : motor.upper);
+    return out;
   }
-  forces.tau[c] += wanted;
-  forces.by_u[i] = P;
-  forces.by_P[i] = u - q;
-  forces.by_D[i] = -qdot;
-  (motor.implicit ? forces.by_q : forces.by_start_q)[c] -= P;
-  (motor.implicit ? forces.by_qdot : forces.by_start_qdot)[c] -= D;
+  out.tau = wanted;
+  out.by_u = P;
+  out.by_P = u - q;
+  out.by_D = -qdot;
+  out.by_q = -P;
+  out.by_qdot = -D;
+  return out;
 }
 
 }  // namespace
@@ -80,6 +84,16 @@ int coordinate_of_control(const Model& model, int motor, int control) {
 }
 
 template <Scalar S>
+MotorForce<S> motor_force(const Model& model, const Mechanism<S>& mechanism, int motor, const S& u,
+                          const S& q, const S& qdot) {
+  const Motor& driven = model.motors()[static_cast<std::size_t>(motor)];
+  return driven.kind == Motor::Kind::kForce
+             ? drive_by_force<S>(driven, u)
+             : drive_to_position<S>(driven, mechanism.motor_P[motor], mechanism.motor_D[motor], u,
+                                    q, qdot);
+}
+
+template <Scalar S>
 void compute_joint_forces(const Model& model, const Mechanism<S>& mechanism, const VectorView<S>& q,
                           const VectorView<S>& qdot, const VectorView<S>& u,
                           const StepStart<S>& start, JointForces<S>& forces) {
@@ -94,20 +108,26 @@ void compute_joint_forces(const Model& model, const Mechanism<S>& mechanism, con
     const CoordinateRange range = model.coordinates_of_link(motor.link);
     for (int c = range.begin; c < range.end; ++c) {
       const int i = model.first_control(m) + c - range.begin;
-      if (motor.kind == Motor::Kind::kForce) {
-        drive_by_force<S>(motor, c, i, u[i], forces);
-      } else {
-        const S& q_used = motor.implicit ? q[c] : start.q[c];
-        const S& qdot_used = motor.implicit ? qdot[c] : start.qdot[c];
-        drive_to_position<S>(motor, mechanism.motor_P[m], mechanism.motor_D[m], c, i, u[i], q_used,
-                             qdot_used, forces);
-      }
+      const bool at_start = motor.kind == Motor::Kind::kPosition && !motor.implicit;
+      const MotorForce<S> force =
+          motor_force<S>(model, mechanism, m, u[i], at_start ? start.q[c] : q[c],
+                         at_start ? start.qdot[c] : qdot[c]);
+      forces.tau[c] += force.tau;
+      forces.by_u[i] = force.by_u;
+      forces.by_P[i] = force.by_P;
+      forces.by_D[i] = force.by_D;
+      (at_start ? forces.by_start_q : forces.by_q)[c] += force.by_q;
+      (at_start ? forces.by_start_qdot : forces.by_qdot)[c] += force.by_qdot;
     }
   }
 }
 
 template struct JointForces<double>;
 template struct JointForces<Dual>;
+template MotorForce<double> motor_force(const Model&, const Mechanism<double>&, int, const double&,
+                                        const double&, const double&);
+template MotorForce<Dual> motor_force(const Model&, const Mechanism<Dual>&, int, const Dual&,
+                                      const Dual&, const Dual&);
 template void compute_joint_forces(const Model&, const Mechanism<double>&,
                                    const VectorView<double>&, const VectorView<double>&,
                                    const VectorView<double>&, const StepStart<double>&,

@@ -11,6 +11,25 @@ struct StepStart {
   VectorX<S> qdot;  ///<                                                          [dof]
 };
 
+/// Generalised force of a motor on one coordinate, and its derivatives.
+template <Scalar S>
+struct MotorForce {
+  S tau = S(0.0);      ///< torque or force
+  S by_u = S(0.0);     ///< by the control
+  S by_q = S(0.0);     ///< by the coordinate that it reads
+  S by_qdot = S(0.0);  ///< by that coordinate's rate
+  S by_P = S(0.0);     ///< by the motor's P
+  S by_D = S(0.0);     ///< by the motor's D
+};
+
+/// @param motor    which motor of the model
+/// @param u        its control for the coordinate
+/// @param q, qdot  the coordinate and its rate, as the motor reads them
+/// At a kink the derivatives are those that compute_joint_forces tells of.
+template <Scalar S>
+[[nodiscard]] MotorForce<S> motor_force(const Model& model, const Mechanism<S>& mechanism,
+                                        int motor, const S& u, const S& q, const S& qdot);
+
 /// Generalised forces that act coordinate by coordinate, and their derivatives: joint springs,
 /// dampers, limit springs (f̃_r of (2)) and motors (u of (2)). Every derivative by a state is
 /// diagonal; every control acts on one coordinate.

@@ -6,15 +6,15 @@
 namespace hbar {
 namespace {
 
-template <typename NameOf>
-int find_by_name(const std::vector<Link>& links, std::string_view name, std::string_view what,
+template <typename Item, typename NameOf>
+int find_by_name(const std::vector<Item>& items, std::string_view name, std::string_view what,
                  const NameOf& name_of) {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (name_of(links[i]) == name) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (name_of(items[i]) == name) {
       return static_cast<int>(i);
     }
-    names.push_back(name_of(links[i]));
+    names.push_back(name_of(items[i]));
   }
   throw InvalidInput(
       concat("there is no ", what, " '", name, "'; ", unknown_name_hint(name, names)));
@@ -60,6 +60,10 @@ int Model::find_joint(std::string_view joint) const {
 
 int Model::find_body(std::string_view body) const {
   return find_by_name(links_, body, "body", [](const Link& l) { return l.body.name; });
+}
+
+int Model::find_contact(std::string_view contact) const {
+  return find_by_name(contacts_, contact, "contact", [](const Contact& c) { return c.name; });
 }
 
 bool touches_as_ball(const Model& model, const Contact& contact) {

@@ -131,11 +131,12 @@ class Model {
   /// Name of control i: the motor's joint, and the coordinate's where there are several.
   [[nodiscard]] std::string control_name(int i) const;
 
-  /// Index of the link, joint or body of that name.
+  /// Index of the link, joint, body or contact of that name.
   /// @throws InvalidInput naming the nearest existing name
   [[nodiscard]] int find_link(std::string_view link) const;
   [[nodiscard]] int find_joint(std::string_view joint) const;
   [[nodiscard]] int find_body(std::string_view body) const;
+  [[nodiscard]] int find_contact(std::string_view contact) const;
 
   friend bool operator==(const Model& a, const Model& b) {
     return a.name_ == b.name_ && a.units_ == b.units_ && a.gravity_ == b.gravity_ &&

@@ -44,6 +44,17 @@ Matrix3<S> right_jacobian(const Vector3<S>& r) {
   return J;
 }
 
+template <Scalar S>
+Matrix3<S> right_jacobian_inverse(const Vector3<S>& r) {
+  const S s = r.dot(r);
+  const auto c = stumpff(s);
+  // J_r⁻¹ = I + [r] / 2 + e [r]² with e = (1 − c1 / (2 c2)) / s, where 2 c2 − c1 = s (c3 − 2 c4).
+  const S e = (c[3] - 2.0 * c[4]) / (2.0 * c[2]);
+  Matrix3<S> J = e * r * r.transpose() + 0.5 * skew(r);
+  J.diagonal().array() += S(1.0) - e * s;
+  return J;
+}
+
 namespace {
 
 /// Coefficients of J_r x = x − b r × x + g r × (r × x) and their derivatives by s = ‖r‖².
@@ -118,12 +129,27 @@ Eigen::Vector3d log_rotation(const Eigen::Matrix3d& R) {
   return rotation.angle() * rotation.axis();
 }
 
+template <std::same_as<Dual> S>
+Vector3<S> log_rotation(const Matrix3<S>& R) {
+  const Eigen::Matrix3d value = R.unaryExpr([](const Dual& entry) { return entry.value; });
+  const Eigen::Matrix3d slope = R.unaryExpr([](const Dual& entry) { return entry.slope; });
+  const Eigen::Vector3d r = log_rotation(value);
+  const Eigen::Matrix3d turn = value.transpose() * slope;
+  const Eigen::Vector3d axis(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0),
+                             turn(1, 0) - turn(0, 1));
+  const Eigen::Vector3d rate = right_jacobian_inverse(r) * (0.5 * axis);
+  return {Dual(r[0], rate[0]), Dual(r[1], rate[1]), Dual(r[2], rate[2])};
+}
+
 template Matrix3<double> exp_rotation(const Vector3<double>&);
 template Matrix3<Dual> exp_rotation(const Vector3<Dual>&);
 template Matrix3<double> axis_rotation(const Eigen::Vector3d&, const double&);
 template Matrix3<Dual> axis_rotation(const Eigen::Vector3d&, const Dual&);
 template Matrix3<double> right_jacobian(const Vector3<double>&);
 template Matrix3<Dual> right_jacobian(const Vector3<Dual>&);
+template Vector3<Dual> log_rotation(const Matrix3<Dual>&);
+template Matrix3<double> right_jacobian_inverse(const Vector3<double>&);
+template Matrix3<Dual> right_jacobian_inverse(const Vector3<Dual>&);
 template ExponentialRates<double> exponential_rates(const Vector3<double>&, const Vector3<double>&,
                                                     const Vector3<double>&);
 template ExponentialRates<Dual> exponential_rates(const Vector3<Dual>&, const Vector3<Dual>&,

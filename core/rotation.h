@@ -18,6 +18,10 @@ template <Scalar S>
 template <Scalar S>
 [[nodiscard]] Matrix3<S> right_jacobian(const Vector3<S>& r);
 
+/// J_r(r)⁻¹ for ‖r‖ < 2π, exact at r = 0: ∂ log(R exp([x]))/∂x at x = 0, r = log R.  [3 x 3]
+template <Scalar S>
+[[nodiscard]] Matrix3<S> right_jacobian_inverse(const Vector3<S>& r);
+
 /// Right Jacobian of exp and what differentiating S(r) ṙ = J_r(r) ṙ twice needs.
 ///
 /// With T[x, y] = Σ_k ∂(J_r x)/∂r_k y_k, the derivative of J_r(r) x along y. Exact to rounding for
@@ -41,5 +45,8 @@ template <Scalar S>
 
 /// Rotation vector r with exp([r]) = R and ‖r‖ ≤ π, rad.                         [3]
 [[nodiscard]] Eigen::Vector3d log_rotation(const Eigen::Matrix3d& R);
+/// The same with its derivative along the direction that R carries; ‖r‖ < π.        [3]
+template <std::same_as<Dual> S>
+[[nodiscard]] Vector3<S> log_rotation(const Matrix3<S>& R);
 
 }  // namespace hbar

@@ -168,28 +168,6 @@ UnitSolid<S> unit_solid_rate(const Shape& kind, const Vector3<S>& sizes, int k) 
   return std::visit([&sizes, k](const auto& solid) { return rate<S>(solid, sizes, k); }, kind);
 }
 
-template <Scalar S>
-Vector3<S> volume_growth(const Shape& kind, const Vector3<S>& sizes) {
-  if (std::holds_alternative<Cuboid>(kind)) {
-    return sizes.cwiseInverse();
-  }
-  if (std::holds_alternative<Sphere>(kind)) {
-    return {3.0 / sizes[0], S(0.0), S(0.0)};
-  }
-  if (std::holds_alternative<Cylinder>(kind)) {
-    return {2.0 / sizes[0], 1.0 / sizes[1], S(0.0)};
-  }
-  if (std::holds_alternative<Capsule>(kind)) {
-    // V = π r² (length + 4/3 r).
-    const S by_length = 1.0 / (sizes[1] + 4.0 / 3.0 * sizes[0]);
-    return {2.0 / sizes[0] + 4.0 / 3.0 * by_length, by_length, S(0.0)};
-  }
-  throw InvalidInput("volume_growth: a body without a shape has no volume");
-}
-
-template Vector3<double> volume_growth(const Shape&, const Vector3<double>&);
-template Vector3<Dual> volume_growth(const Shape&, const Vector3<Dual>&);
-
 template UnitSolid<double> unit_solid_rate(const Shape&, const Vector3<double>&, int);
 template UnitSolid<Dual> unit_solid_rate(const Shape&, const Vector3<Dual>&, int);
 template UnitSolid<double> unit_solid(const Shape&, const Vector3<double>&);

@@ -80,14 +80,6 @@ template <Scalar S>
 template <Scalar S>
 [[nodiscard]] UnitSolid<S> unit_solid_rate(const Shape& kind, const Vector3<S>& sizes, int k);
 
-/// Relative growth of a solid's volume with each of its sizes, ∂ ln V/∂size, 1/length; 0 for sizes
-/// that it has not.                                                                   [3]
-///
-/// @param kind, sizes  as in unit_solid
-/// @throws InvalidInput for NoShape
-template <Scalar S>
-[[nodiscard]] Vector3<S> volume_growth(const Shape& kind, const Vector3<S>& sizes);
-
 /// Mass properties of a homogeneous solid.
 ///
 /// @param shape    any shape but NoShape; lengths > 0

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "hbar/core/parameter_derivatives.h"
-
 namespace hbar {
 namespace {
 
@@ -38,11 +36,7 @@ SurfaceDistance<S> surface_of(const Model& model, const Mechanism<S>& mechanism,
 }  // namespace
 
 template <Scalar S>
-TactileReadings<S>::TactileReadings(const Model& model)
-    : model_(model),
-      covectors_(model.link_count()),
-      by_displacement_(static_cast<std::size_t>(model.tree().node_count())),
-      by_twist_(by_displacement_.size()) {
+TactileReadings<S>::TactileReadings(const Model& model) : model_(model), links_(model) {
   int first = 0;
   for (int i = 0; i < static_cast<int>(model.tactile_sensors().size()); ++i) {
     const TactileSensor& sensor = model.tactile_sensors()[static_cast<std::size_t>(i)];
@@ -61,18 +55,6 @@ TactileReadings<S>::TactileReadings(const Model& model)
   }
 }
 
-template <Scalar S>
-PairMotion<S> TactileReadings<S>::pair_motion(const Mechanism<S>& mechanism,
-                                              const Motion<S>& motion,
-                                              const Contact& contact) const {
-  const auto body = [&](int link) -> BodyMotion<S> {
-    const NodeMotion<S>& joint = motion.at(model_.node_of_link(link));
-    return {RigidTransform<S>{joint.R, joint.p} * mechanism.X_JB[static_cast<std::size_t>(link)],
-            joint.V};
-  };
-  return {body(contact.link), body(contact.other)};
-}
-
 /// Visits the touching points: visit(side, pair, index of the point, TouchingPoint).
 template <Scalar S>
 template <typename Visit>
@@ -81,7 +63,8 @@ void TactileReadings<S>::for_each_touch(const Mechanism<S>& mechanism, const Mot
   for (const Side& side : sides_) {
     const Contact& contact = side.contact;
     const TactileSensor& sensor = model_.tactile_sensors()[static_cast<std::size_t>(side.sensor)];
-    const PairMotion<S> pair = pair_motion(mechanism, motion, contact);
+    const PairMotion<S> pair = {body_motion<S>(model_, mechanism, motion, contact.link),
+                                body_motion<S>(model_, mechanism, motion, contact.other)};
     const SurfaceDistance<S> surface = surface_of<S>(model_, mechanism, contact);
     const RigidTransform<S> X_BA = inverse(pair.b.X_WB) * pair.a.X_WB;
     const ContactCoefficients& c = contact.coefficients;
@@ -136,49 +119,12 @@ void TactileReadings<S>::add_point(const Side& side, const PairMotion<S>& pair,
   const Vector3<S> turned = point.x.cross(by_x) - point.force.f.cross(weight);
   const Vector6<S> by_displacement =
       sum<S>(spatial<S>(turned, by_x), cross_wrench<S>(pair.a.V, by_twist));
-  const auto a = static_cast<std::size_t>(side.contact.link);
-  const auto b = static_cast<std::size_t>(side.contact.other);
-  covectors_.by_displacement[a] += by_displacement;
-  covectors_.by_displacement[b] -= by_displacement;
-  covectors_.by_twist[a] += by_twist;
-  covectors_.by_twist[b] -= by_twist;
+  Vector6<S> by_twist_of_b = -by_twist;
   if (reaction == Reaction::kSurface) {
-    covectors_.by_twist[b].template head<3>() += (point.d * point.n).cross(by_u);
+    by_twist_of_b.template head<3>() += (point.d * point.n).cross(by_u);
   }
-}
-
-/// Sums covectors along the tree and projects them on the coordinates.
-template <Scalar S>
-void TactileReadings<S>::sum_nodes(const Motion<S>& motion, Eigen::Ref<VectorX<S>> by_q,
-                                   Eigen::Ref<VectorX<S>> by_qdot) {
-  const Tree& tree = model_.tree();
-  for (std::size_t i = 0; i < by_twist_.size(); ++i) {
-    by_displacement_[i].setZero();
-    by_twist_[i].setZero();
-  }
-  for (int link = 0; link < model_.link_count(); ++link) {
-    const auto node = static_cast<std::size_t>(model_.node_of_link(link));
-    by_displacement_[node] = covectors_.by_displacement[static_cast<std::size_t>(link)];
-    by_twist_[node] = covectors_.by_twist[static_cast<std::size_t>(link)];
-  }
-  for (int i = tree.node_count(); i-- > 0;) {
-    const Node& node = tree.node(i);
-    const auto k = static_cast<std::size_t>(i);
-    const Vector6<S>& V = motion.parent_of(node).V;
-    for (int c = node.coordinates.begin; c < node.coordinates.end; ++c) {
-      const Vector6<S> J = motion.J.col(c);
-      by_q[c] += power<S>(by_displacement_[k], J) + power<S>(by_twist_[k], cross_twist<S>(V, J));
-      by_qdot[c] += power<S>(by_twist_[k], J);
-      if (node.motion == MotionKind::kExponential) {
-        const auto e = static_cast<std::size_t>(c - node.coordinates.begin);
-        by_q[c] += by_twist_[k].dot(motion.exponential(i).W[e]);
-      }
-    }
-    if (node.parent >= 0) {
-      by_displacement_[static_cast<std::size_t>(node.parent)] += by_displacement_[k];
-      by_twist_[static_cast<std::size_t>(node.parent)] += by_twist_[k];
-    }
-  }
+  links_.add_to_body(side.contact.link, by_displacement, by_twist);
+  links_.add_to_body(side.contact.other, -by_displacement, by_twist_of_b);
 }
 
 template <Scalar S>
@@ -186,10 +132,7 @@ void TactileReadings<S>::pull_back(const Mechanism<S>& mechanism, const Paramete
                                    const VectorView<S>& p, const Motion<S>& motion,
                                    const VectorView<S>& y, Eigen::Ref<VectorX<S>> by_q,
                                    Eigen::Ref<VectorX<S>> by_qdot, Eigen::Ref<VectorX<S>> grad_p) {
-  for (std::size_t i = 0; i < covectors_.by_twist.size(); ++i) {
-    covectors_.by_displacement[i].setZero();
-    covectors_.by_twist[i].setZero();
-  }
+  links_.clear();
   for_each_touch(
       mechanism, motion,
       [&](const Side& side, const PairMotion<S>& pair, int i, const TouchingPoint<S>& point) {
@@ -211,28 +154,13 @@ void TactileReadings<S>::pull_back(const Mechanism<S>& mechanism, const Paramete
           }
         }
       });
-  sum_nodes(motion, by_q, by_qdot);
-  for (const ParameterBlock& block : set.blocks()) {
-    if (block.kind == ParameterKind::kJointTransform) {
-      const int first = first_node_of_link(model_, block.owner);
-      const auto k = static_cast<std::size_t>(first);
-      const Vector6<S> G =
-          sum<S>(by_displacement_[k],
-                 cross_wrench<S>(-motion.parent_of(model_.tree().node(first)).V, by_twist_[k]));
-      add_frame_gradient<S>(model_, mechanism, motion, set, block, p, G, grad_p);
-    } else if (block.kind == ParameterKind::kBodyTransform) {
-      const auto k = static_cast<std::size_t>(block.owner);
-      const Vector6<S> G = sum<S>(
-          covectors_.by_displacement[k],
-          cross_wrench<S>(-motion.at(model_.node_of_link(block.owner)).V, covectors_.by_twist[k]));
-      add_frame_gradient<S>(model_, mechanism, motion, set, block, p, G, grad_p);
-    }
-  }
+  links_.sum();
+  links_.add_coordinates(motion, by_q);
+  links_.add_rates(motion, by_qdot);
+  links_.add_frames(mechanism, set, p, motion, grad_p);
 }
 
 template class TactileReadings<double>;
-template TactileReadings<Dual>::TactileReadings(const Model&);
-template void TactileReadings<Dual>::readings(const Mechanism<Dual>&, const Motion<Dual>&,
-                                              Eigen::Ref<VectorX<Dual>>) const;
+template class TactileReadings<Dual>;
 
 }  // namespace hbar

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "hbar/core/contact_forces.h"
-#include "hbar/core/parameters.h"
+#include "hbar/core/link_pullback.h"
 
 namespace hbar {
 
@@ -38,22 +38,16 @@ class TactileReadings {
     Contact contact;
   };
 
-  PairMotion<S> pair_motion(const Mechanism<S>& mechanism, const Motion<S>& motion,
-                            const Contact& contact) const;
   template <typename Visit>
   void for_each_touch(const Mechanism<S>& mechanism, const Motion<S>& motion,
                       const Visit& visit) const;
   Matrix3<S> world_axes(const PairMotion<S>& pair, int sensor, int point) const;
   void add_point(const Side& side, const PairMotion<S>& pair, const TouchingPoint<S>& point,
                  const Vector3<S>& weight);
-  void sum_nodes(const Motion<S>& motion, Eigen::Ref<VectorX<S>> by_q,
-                 Eigen::Ref<VectorX<S>> by_qdot);
 
   const Model& model_;
   std::vector<Side> sides_;
-  LinkCovectors<S> covectors_;               // per link
-  std::vector<Vector6<S>> by_displacement_;  // per node, summed over its subtree
-  std::vector<Vector6<S>> by_twist_;         // per node, summed over its subtree
+  LinkPullback<S> links_;
 };
 
 }  // namespace hbar

@@ -50,6 +50,18 @@ TEST(Model, CountsAndNamesWhatItHolds) {
   EXPECT_EQ(model.coordinates_of_link(2), (CoordinateRange{3, 9}));
 }
 
+TEST(Model, FindsContactsByName) {
+  ModelBuilder builder("touching");
+  builder.add_link(-1, {.name = "j", .kind = TranslationalJoint{}},
+                   solid_body("ball", Sphere{1.0}, 1.0));
+  builder.add_contact({.name = "wall", .link = 0, .surface = Plane{}});
+  builder.add_contact({.name = "floor", .link = 0, .surface = Plane{}});
+  const Model model = builder.build();
+  EXPECT_EQ(model.find_contact("floor"), 1);
+  EXPECT_EQ(message_of<InvalidInput>([&] { static_cast<void>(model.find_contact("flor")); }),
+            "there is no contact 'flor'; did you mean 'floor'?");
+}
+
 TEST(Model, FindsByNameAndSuggestsTheNearest) {
   const Model model = small_builder().build();
   EXPECT_EQ(model.find_link("second"), 1);

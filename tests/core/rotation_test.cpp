@@ -115,5 +115,23 @@ TEST(LogRotation, InvertsTheExponential) {
   }
 }
 
+TEST(RightJacobianInverse, IsTheInverse) {
+  for (const Vector3d& r : vectors_of_every_size()) {
+    const Matrix3d product = right_jacobian_inverse(r) * right_jacobian(r);
+    // Its entries grow towards 2π, where the Jacobian is singular.
+    EXPECT_LT(largest((product - Matrix3d::Identity()).eval()), 1e-13) << r;
+  }
+}
+
+TEST(LogRotation, HasTheDerivativeThatUndoesTheExponentials) {
+  Random random(6);
+  for (const double angle : {0.0, 1e-300, 1e-9, 1e-4, 1.0, 3.0, 3.1}) {
+    const Vector3d r = angle * random.direction();
+    const Vector3d rate = random.vector3();
+    const Vector3<Dual> back = log_rotation(exp_rotation<Dual>(along(r, rate)));
+    EXPECT_LT((slopes(back) - rate).norm(), 1e-13 * rate.norm()) << r;
+  }
+}
+
 }  // namespace
 }  // namespace hbar

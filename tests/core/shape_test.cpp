@@ -88,26 +88,6 @@ TEST(EverySolid, HasTheMassAndMomentsOfItsSlices) {
   }
 }
 
-TEST(VolumeGrowth, IsTheRelativeDerivativeOfTheVolume) {
-  for (const SlicedSolid& solid : every_sliced_solid()) {
-    Eigen::Vector3d sizes = Eigen::Vector3d::Zero();
-    for (int k = 0; k < size_count(solid.shape); ++k) {
-      sizes[k] = sizes_of(solid.shape)[static_cast<std::size_t>(k)];
-    }
-    const Eigen::Vector3d growth = volume_growth<double>(solid.shape, sizes);
-    for (int k = 0; k < 3; ++k) {
-      Vector3<Dual> grown = sizes.cast<Dual>();
-      grown[k].slope = 1.0;
-      const Dual volume = unit_solid<Dual>(solid.shape, grown).mass;
-      EXPECT_NEAR(growth[k], volume.slope / volume.value, 1e-14 * growth.norm()) << solid.name;
-    }
-  }
-  EXPECT_NE(message_of<InvalidInput>([] {
-              static_cast<void>(volume_growth<double>(NoShape{}, Eigen::Vector3d::Ones()));
-            }),
-            "");
-}
-
 TEST(EverySolid, GrowsWithItsSizesAsDualNumbersDo) {
   for (const SlicedSolid& solid : every_sliced_solid()) {
     const std::vector<double> lengths = sizes_of(solid.shape);
