@@ -30,12 +30,6 @@ std::vector<Activity> activities(const Eigen::VectorXd& value, const Eigen::Vect
   return result;
 }
 
-void rethrow_or_fail(const ScaledNlp& program) {
-  const NlpEvaluator& evaluator = program.evaluator();
-  if (evaluator.exception() != nullptr) std::rethrow_exception(evaluator.exception());
-  throw EvaluationError(concat("the point cannot be evaluated: ", evaluator.last_failure()));
-}
-
 /// Rows of the active constraints by the free variables, transposed.
 struct ActiveJacobian {
   std::vector<int> constraints;  // of each column of `transposed`
@@ -106,7 +100,7 @@ Eigen::VectorXd lagrangian_gradient(ScaledNlp& program, const PrimalDualPoint& p
   Eigen::VectorXd jacobian(static_cast<Eigen::Index>(pattern.rows.size()));
   if (!program.scaled_gradient(point.x, gradient) ||
       (program.constraint_count() > 0 && !program.scaled_jacobian(point.x, jacobian))) {
-    rethrow_or_fail(program);
+    program.throw_failure("multipliers");
   }
   for (std::size_t k = 0; k < pattern.rows.size(); ++k) {
     gradient[pattern.columns[k]] +=
@@ -122,7 +116,7 @@ MultiplierEstimate estimate_multipliers(ScaledNlp& program, const Eigen::VectorX
   MultiplierEstimate result;
   result.point = {x, Eigen::VectorXd::Zero(m), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   Eigen::VectorXd c(m);
-  if (!program.scaled_constraints(x, c)) rethrow_or_fail(program);
+  if (!program.scaled_constraints(x, c)) program.throw_failure("multipliers");
   result.active = find_active_set(program, x, c, tolerance);
   ActiveJacobian A{
       places(result.active.constraints, true), places(result.active.variables, false), {}};
@@ -132,7 +126,7 @@ MultiplierEstimate estimate_multipliers(ScaledNlp& program, const Eigen::VectorX
   if (result.examined && entries > 0) {
     const SparsityPattern& pattern = program.jacobian_pattern();
     Eigen::VectorXd jacobian(static_cast<Eigen::Index>(pattern.rows.size()));
-    if (!program.scaled_jacobian(x, jacobian)) rethrow_or_fail(program);
+    if (!program.scaled_jacobian(x, jacobian)) program.throw_failure("multipliers");
     fill(pattern, jacobian, A, n, m);
     Decomposition qr;
     qr.setThreshold(kDependent);

@@ -136,4 +136,10 @@ PrimalDualPoint ScaledNlp::unscaled(PrimalDualPoint point) const {
   return point;
 }
 
+void ScaledNlp::throw_failure(const char* who) const {
+  if (evaluator_.exception() != nullptr) std::rethrow_exception(evaluator_.exception());
+  throw EvaluationError(
+      concat(who, ": the point cannot be evaluated: ", evaluator_.last_failure()));
+}
+
 }  // namespace hbar::solvers

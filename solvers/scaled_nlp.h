@@ -75,6 +75,12 @@ class ScaledNlp {
   /// A point in the program's units, x within its bounds.
   [[nodiscard]] PrimalDualPoint unscaled(PrimalDualPoint point) const;
 
+  /// Throws what made the last evaluation fail.
+  ///
+  /// @param who  begins the message: "sensitivity"
+  /// @throws EvaluationError, or whatever else the program threw
+  [[noreturn]] void throw_failure(const char* who) const;
+
   /// Evaluations in the program's units, their counts, failures and the best point.
   [[nodiscard]] NlpEvaluator& evaluator() { return evaluator_; }
   [[nodiscard]] const NlpEvaluator& evaluator() const { return evaluator_; }
