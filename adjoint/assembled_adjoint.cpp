@@ -19,7 +19,7 @@ Gradient AssembledAdjoint::pull_back(const Trajectory& trajectory,
   system_.solver().solve_transposed(y_bar, z_bar_);
   Gradient out;
   out.p = weights.p - system.dg_dp.transpose() * z_bar_;
-  out.u = partials.u;
+  out.u = weights.u;
   out.u.reshaped() -= system.dg_du.transpose() * z_bar_;
   out.q0 = weights.q_bar.col(0) - system.dg_dq0.matrix().transpose() * z_bar_;
   out.qdot0 = weights.qdot0 - system.dg_dqdot0.matrix().transpose() * z_bar_;

@@ -141,7 +141,8 @@ class PieceReader {
     }
     if (model.contact_count() > 0) {
       apply_parameters<double>(model, simulator_.parameters(), trajectory.inputs.p, mechanism_);
-      for (int stage = 1; stage < trajectory.timeline.stage_count(); ++stage) {
+      const int first = values.measured.rows() > 0 ? 0 : 1;  // measured at the start, too
+      for (int stage = first; stage < trajectory.timeline.stage_count(); ++stage) {
         read_contacts(trajectory.q.col(stage), trajectory.qdot.col(stage), piece);
       }
     }
@@ -288,10 +289,7 @@ class Prober {
   double dot_gap(const Eigen::VectorXd& d, double slope, double scale) {
     const Directions directions = as_directions(simulator_, problem_.inputs, d);
     const Tangents tangents = tangent_->push_forward(trajectory_, directions);
-    const double product = partials_->q.norm() * tangents.q.norm() +
-                           partials_->qdot.norm() * tangents.qdot.norm() +
-                           partials_->v.norm() * tangents.v.norm() +
-                           partials_->tactile.norm() * tangents.tactile.norm();
+    const double product = norm_product(*partials_, tangents);
     const double dual_product = adjoint_norm_ * tangent_->right_hand_sides().norm();
     const double forward = directional_derivative(*partials_, tangents, directions, 0);
     return std::abs(slope - forward) / std::max({scale, product, dual_product});

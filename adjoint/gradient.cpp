@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hbar/core/error.h"
+#include "hbar/core/measurements.h"
 #include "hbar/core/parameter_derivatives.h"
 
 namespace hbar {
@@ -23,6 +24,7 @@ struct AdjointSweep::Workspace {
         point(s.model()),
         end_effectors(s.model()),
         tactile(s.model()),
+        measurements(s.model(), s.options().measurements),
         y_start{Eigen::VectorXd(s.model().dof()), Eigen::VectorXd(s.model().dof())},
         block(s.model().dof(), s.model().dof()),
         lu(s.model().dof()) {}
@@ -39,6 +41,7 @@ struct AdjointSweep::Workspace {
   StagePoint<double> point;
   EndEffectors<double> end_effectors;
   TactileReadings<double> tactile;
+  Measurements<double> measurements;
   Eigen::MatrixXd q_bar;     // ∂L/∂q per stage, so far
   Eigen::MatrixXd qdot_bar;  // ∂L/∂q̇ per stage, so far
   Eigen::VectorXd g, y, z, residual, correction, y_qdot, y_a;
@@ -50,7 +53,8 @@ struct AdjointSweep::Workspace {
   int refactorized = 0;
 };
 
-/// Brings ∂Ψ/∂v and ∂Ψ/∂tactile at step k to the coordinates, rates and parameters.
+/// Brings ∂Ψ/∂v, ∂Ψ/∂tactile and ∂Ψ/∂measured at step k to coordinates, rates, controls,
+/// parameters.
 void AdjointSweep::Workspace::add_variables(const Trajectory& trajectory,
                                             const TrajectoryPartials& partials, int k,
                                             Gradient& out) {
@@ -63,6 +67,13 @@ void AdjointSweep::Workspace::add_variables(const Trajectory& trajectory,
   if (partials.tactile.rows() > 0 && !partials.tactile.col(k).isZero(0.0)) {
     tactile.pull_back(mechanism, set, trajectory.inputs.p, stage.motion(), partials.tactile.col(k),
                       q_bar.col(s), qdot_bar.col(s), out.p);
+  }
+  if (partials.measured.rows() > 0 && !partials.measured.col(k).isZero(0.0)) {
+    const int step = measured_step(k);
+    measurements.pull_back(mechanism, set, trajectory.inputs.p, stage.motion(), trajectory.q.col(s),
+                           trajectory.qdot.col(s), trajectory.inputs.u.col(step),
+                           partials.measured.col(k), q_bar.col(s), qdot_bar.col(s), out.u.col(step),
+                           out.p);
   }
 }
 

@@ -160,7 +160,7 @@ Gradient PeriodicSolver::gradient(const Trajectory& orbit, const Objective& obje
   Gradient out;
   out.value = objective.value(values);
   out.p = weights.p - system.dg_dp.transpose() * z_bar;
-  out.u = partials.u;
+  out.u = weights.u;
   out.u.reshaped() -= system.dg_du.transpose() * z_bar;
   out.q0.setZero(w.simulator.model().dof());
   out.qdot0.setZero(w.simulator.model().dof());

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "hbar/adjoint/value_reader.h"
 #include "hbar/core/chart.h"
 #include "hbar/core/error.h"
+#include "hbar/core/nearest_name.h"
 
 namespace hbar {
 namespace {
@@ -77,7 +79,7 @@ class Simulator::StageSystem final : public solvers::NewtonSystem {
 };
 
 struct Simulator::Workspace {
-  explicit Workspace(const Model& model)
+  Workspace(const Model& model, const SimulationOptions& options)
       : mechanism(nominal_mechanism<double>(model)),
         history(model),
         system(model, mechanism),
@@ -85,10 +87,7 @@ struct Simulator::Workspace {
         x(model.dof()),
         predicted(model.dof()),
         last_a(model.dof()),
-        motion(model.tree()),
-        end_effectors(model),
-        tactile(model),
-        contacts(model) {}
+        reader(model, options.measurements) {}
 
   Mechanism<double> mechanism;
   History history;
@@ -97,24 +96,29 @@ struct Simulator::Workspace {
   Eigen::VectorXd x;
   Eigen::VectorXd predicted;  // x before Newton's method
   Eigen::VectorXd last_a;     // of the stage that was solved last
-  Motion<double> motion;
-  EndEffectors<double> end_effectors;
-  TactileReadings<double> tactile;
-  ContactForces<double> contacts;
+  ValueReader reader;
 };
 
 Simulator::Simulator(Model model, ParameterSet parameters, SimulationOptions options)
-    : model_(std::make_shared<const Model>(std::move(model))),
+    : Simulator(std::make_shared<const Model>(std::move(model)), std::move(parameters),
+                std::move(options)) {}
+
+Simulator::Simulator(std::shared_ptr<const Model> model, ParameterSet parameters,
+                     SimulationOptions options)
+    : model_(std::move(model)),
       parameters_(std::move(parameters)),
       options_(std::move(options)),
       integrator_(&find_integrator(options_.integrator)) {
   check_options();
   const double stages = 2.0 * options_.steps;
   keep_factors_ = options_.keep_factors && stages * bytes_per_stage(true) <= options_.max_memory;
-  work_ = std::make_unique<Workspace>(*model_);
+  work_ = std::make_unique<Workspace>(*model_, options_);
 }
 
 Simulator::~Simulator() = default;
+Simulator::Simulator(const Simulator& other)
+    : Simulator(other.model_, other.parameters_, other.options_) {}
+Simulator& Simulator::operator=(const Simulator& other) { return *this = Simulator(other); }
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
@@ -360,44 +364,25 @@ void Simulator::set_point(const Trajectory& trajectory, int stage, StagePoint<do
 }
 
 TrajectoryValues Simulator::values(const Trajectory& trajectory) {
-  const int steps = trajectory.step_count();
-  TrajectoryValues out;
-  out.h = options_.h;
-  out.q.resize(model_->dof(), steps + 1);
-  out.qdot.resize(model_->dof(), steps + 1);
-  out.v.resize(model_->variable_count(), steps + 1);
-  out.tactile.resize(model_->tactile_count(), steps + 1);
-  out.u = trajectory.inputs.u.leftCols(steps);
-  out.p = trajectory.inputs.p;
-  apply_parameters<double>(*model_, parameters_, trajectory.inputs.p, work_->mechanism);
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(model_->dof());
-  for (int k = 0; k <= steps; ++k) {
-    out.q.col(k) = trajectory.q_at_step(k);
-    out.qdot.col(k) = trajectory.qdot_at_step(k);
-    if (model_->variable_count() + model_->tactile_count() > 0) {
-      compute_motion<double>(model_->tree(), work_->mechanism, out.q.col(k), out.qdot.col(k), none,
-                             work_->motion);
-      work_->end_effectors.positions(work_->motion, out.v.col(k));
-      work_->tactile.readings(work_->mechanism, work_->motion, out.tactile.col(k));
-    }
-  }
-  return out;
+  return work_->reader.values(parameters_, trajectory, options_.h);
 }
 
 std::vector<std::vector<ContactSummary>> Simulator::contact_history(const Trajectory& trajectory) {
-  apply_parameters<double>(*model_, parameters_, trajectory.inputs.p, work_->mechanism);
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(model_->dof());
-  std::vector<std::vector<ContactSummary>> out;
-  for (int k = 0; k <= trajectory.step_count(); ++k) {
-    compute_motion<double>(model_->tree(), work_->mechanism, trajectory.q_at_step(k),
-                           trajectory.qdot_at_step(k), none, work_->motion);
-    work_->contacts.evaluate(work_->mechanism, work_->motion);
-    out.emplace_back();
-    for (int i = 0; i < model_->contact_count(); ++i) {
-      out.back().push_back(work_->contacts.summary(i));
-    }
+  return work_->reader.contact_history(parameters_, trajectory);
+}
+
+const std::vector<std::string>& Simulator::measured_names() const {
+  return work_->reader.measured_names();
+}
+
+int Simulator::measured_index(std::string_view name) const {
+  const std::vector<std::string>& names = measured_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw InvalidInput(
+        concat("there is no measured row '", name, "'; ", unknown_name_hint(name, names)));
   }
-  return out;
+  return static_cast<int>(found - names.begin());
 }
 
 }  // namespace hbar

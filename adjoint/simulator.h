@@ -6,6 +6,7 @@
 
 #include "hbar/adjoint/history.h"
 #include "hbar/core/end_effectors.h"
+#include "hbar/core/measurement.h"
 #include "hbar/core/parameters.h"
 #include "hbar/core/tactile.h"
 
@@ -20,6 +21,8 @@ struct SimulationOptions {
   /// then takes a step of SDIRK2 there.
   std::vector<int> restarts = {};
   solvers::NewtonOptions newton = {};
+  /// Rows of TrajectoryValues::measured, for objectives and constraints to read.
+  std::vector<Measurement> measurements = {};
   int max_halvings = 10;                    ///< of a step that does not converge; each is recorded
   bool keep_factors = true;                 ///< for the adjoint; dropped if they exceed max_memory
   double max_memory = 4e9;                  ///< bytes that a trajectory may take
@@ -76,10 +79,15 @@ struct TrajectoryValues {
 /// Holds its workspace and belongs to one thread at a time; another thread makes its own.
 class Simulator {
  public:
-  /// @throws InvalidInput for an unknown integrator, h or steps that are not positive, or a horizon
-  ///         that would not fit into options.max_memory
+  /// @throws InvalidInput for an unknown integrator, h or steps that are not positive, a horizon
+  ///         that would not fit into options.max_memory, or measurements that the model cannot have
   Simulator(Model model, ParameterSet parameters, SimulationOptions options);
+  /// The same of a model that others use, too.
+  Simulator(std::shared_ptr<const Model> model, ParameterSet parameters, SimulationOptions options);
   ~Simulator();
+  /// Copies share the model and have a workspace of their own.
+  Simulator(const Simulator& other);
+  Simulator& operator=(const Simulator& other);
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
@@ -91,7 +99,8 @@ class Simulator {
   /// @throws InvalidInput if an input has another shape, is not finite or is not physical
   Rollout rollout(const Inputs& inputs);
 
-  /// The values at the steps' ends of a trajectory of this simulator.
+  /// The values at the steps' ends of a trajectory of this simulator. Measurements read the control
+  /// of the step that ends, at k = 0 that of the first step.
   [[nodiscard]] TrajectoryValues values(const Trajectory& trajectory);
 
   /// What each contact did at the steps' ends: [step 0 … N][contact].
@@ -105,8 +114,12 @@ class Simulator {
   [[nodiscard]] const std::shared_ptr<const Model>& shared_model() const { return model_; }
   [[nodiscard]] const ParameterSet& parameters() const { return parameters_; }
   [[nodiscard]] const SimulationOptions& options() const { return options_; }
-  /// Rows of TrajectoryValues::measured.
-  [[nodiscard]] int measured_count() const { return 0; }
+  /// Names of the rows of TrajectoryValues::measured: "NAME" or "NAME.x", … of each measurement.
+  [[nodiscard]] const std::vector<std::string>& measured_names() const;
+  [[nodiscard]] int measured_count() const { return static_cast<int>(measured_names().size()); }
+  /// The row of that name.
+  /// @throws InvalidInput naming the nearest existing name
+  [[nodiscard]] int measured_index(std::string_view name) const;
 
  private:
   class StageSystem;

@@ -4,12 +4,13 @@
 
 namespace hbar {
 
-/// ∂Ψ/∂q̄ with rates, variables and sensor readings replaced by what they depend on: ȳ of (20), and
-/// the direct shares of q̇₀ and p.
+/// ∂Ψ/∂q̄ with rates, variables, sensor readings and measurements replaced by what they depend on: ȳ
+/// of (20), and the direct shares of q̇₀, p and u.
 struct StageWeights {
   Eigen::MatrixXd q_bar;  ///< per stage, column 0 is q₀      [dof x stages]
   Eigen::VectorXd qdot0;  ///<                                [dof]
   Eigen::VectorXd p;      ///<                                [parameters]
+  Eigen::MatrixXd u;      ///<                                [controls x steps]
 };
 
 /// @param trajectory  whole, of this simulator

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "hbar/core/measurements.h"
+
 namespace hbar {
 namespace {
 
@@ -50,15 +52,19 @@ class VariableTangent {
   EndEffectors<double> end_effectors_;
 };
 
-/// Derivatives of the sensor readings along one direction at a time, by dual numbers.
-class TactileTangent {
+/// Derivatives of sensor readings and measurements along one direction at a time, by dual numbers.
+class ReadingTangent {
  public:
-  TactileTangent(Simulator& simulator, const Inputs& inputs, const Eigen::MatrixXd& dp)
+  /// @param dp  no column where nothing is to be read
+  ReadingTangent(Simulator& simulator, const Inputs& inputs, const Eigen::MatrixXd& dp)
       : model_(simulator.model()),
+        inputs_(inputs),
         motion_(model_.tree()),
-        readings_(model_),
+        tactile_(model_),
+        measurements_(model_, simulator.options().measurements),
         none_(VectorX<Dual>::Zero(model_.dof())),
-        out_(VectorX<Dual>::Zero(model_.tactile_count())) {
+        touched_(VectorX<Dual>::Zero(model_.tactile_count())),
+        measured_(VectorX<Dual>::Zero(measurements_.size())) {
     for (Eigen::Index i = 0; i < dp.cols(); ++i) {
       mechanisms_.push_back(nominal_mechanism<Dual>(model_));
       apply_parameters<Dual>(model_, simulator.parameters(), dual(inputs.p, dp.col(i)),
@@ -66,14 +72,24 @@ class TactileTangent {
     }
   }
 
-  void at(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, const Eigen::MatrixXd& dq,
-          const Eigen::MatrixXd& dqdot, Eigen::Ref<Eigen::MatrixXd> out) {
-    for (Eigen::Index i = 0; i < dq.cols(); ++i) {
-      const Mechanism<Dual>& mechanism = mechanisms_[static_cast<std::size_t>(i)];
-      compute_motion<Dual>(model_.tree(), mechanism, dual(q, dq.col(i)), dual(qdot, dqdot.col(i)),
-                           none_, motion_);
-      readings_.readings(mechanism, motion_, out_);
-      out.col(i) = out_.unaryExpr([](const Dual& reading) { return reading.slope; });
+  /// Rows of step k, which ends with coordinates q and rates q̇, in `out`.
+  void at(int k, const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, const Eigen::MatrixXd& dq,
+          const Eigen::MatrixXd& dqdot, const Eigen::MatrixXd& du, Tangents& out) {
+    const int step = measured_step(k);
+    const auto slope = [](const Dual& reading) { return reading.slope; };
+    for (std::size_t i = 0; i < mechanisms_.size(); ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      const VectorX<Dual> q_i = dual(q, dq.col(column));
+      const VectorX<Dual> qdot_i = dual(qdot, dqdot.col(column));
+      const VectorX<Dual> u_i = dual(
+          inputs_.u.col(step), du.col(column).segment(step * inputs_.u.rows(), inputs_.u.rows()));
+      compute_motion<Dual>(model_.tree(), mechanisms_[i], q_i, qdot_i, none_, motion_);
+      tactile_.readings(mechanisms_[i], motion_, touched_);
+      measurements_.readings(mechanisms_[i], motion_, q_i, qdot_i, u_i, measured_);
+      out.tactile.col(column).segment(k * touched_.size(), touched_.size()) =
+          touched_.unaryExpr(slope);
+      out.measured.col(column).segment(k * measured_.size(), measured_.size()) =
+          measured_.unaryExpr(slope);
     }
   }
 
@@ -87,11 +103,14 @@ class TactileTangent {
   }
 
   const Model& model_;
+  const Inputs& inputs_;
   std::vector<Mechanism<Dual>> mechanisms_;  // per direction
   Motion<Dual> motion_;
-  TactileReadings<Dual> readings_;
+  TactileReadings<Dual> tactile_;
+  Measurements<Dual> measurements_;
   VectorX<Dual> none_;
-  VectorX<Dual> out_;
+  VectorX<Dual> touched_;
+  VectorX<Dual> measured_;
 };
 
 /// δq̇ of a stage from δq of the stages it looks back on.
@@ -146,11 +165,11 @@ Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directio
   out.q.resize((steps + 1) * n, directions.count());
   out.qdot.resize((steps + 1) * n, directions.count());
   out.v.resize((steps + 1) * model.variable_count(), directions.count());
-  const int readings = model.tactile_count();
-  out.tactile.resize((steps + 1) * readings, directions.count());
-  out.measured.resize(0, directions.count());
-  TactileTangent tactile(simulator_, trajectory.inputs,
-                         readings > 0 ? directions.p : Eigen::MatrixXd());
+  const int measured = simulator_.measured_count();
+  const bool reads = model.tactile_count() + measured > 0;
+  out.tactile.resize((steps + 1) * model.tactile_count(), directions.count());
+  out.measured.resize((steps + 1) * measured, directions.count());
+  ReadingTangent readings(simulator_, trajectory.inputs, reads ? directions.p : Eigen::MatrixXd());
   VariableTangent variables(simulator_);
   variables.set_parameters(trajectory.inputs.p);
   for (int k = 0; k <= steps; ++k) {
@@ -161,9 +180,9 @@ Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directio
       out.v.middleRows(k * model.variable_count(), model.variable_count()) = variables.at(
           trajectory.inputs, trajectory.q.col(s), dq.middleRows(s * n, n), directions.p);
     }
-    if (readings > 0) {
-      tactile.at(trajectory.q.col(s), trajectory.qdot.col(s), dq.middleRows(s * n, n),
-                 out.qdot.middleRows(k * n, n), out.tactile.middleRows(k * readings, readings));
+    if (reads) {
+      readings.at(k, trajectory.q.col(s), trajectory.qdot.col(s), dq.middleRows(s * n, n),
+                  out.qdot.middleRows(k * n, n), directions.u, out);
     }
   }
   return out;
@@ -177,6 +196,12 @@ double directional_derivative(const TrajectoryPartials& partials, const Tangents
          partials.tactile.reshaped().dot(tangents.tactile.col(i)) +
          partials.measured.reshaped().dot(tangents.measured.col(i)) +
          partials.u.reshaped().dot(directions.u.col(i)) + partials.p.dot(directions.p.col(i));
+}
+
+double norm_product(const TrajectoryPartials& partials, const Tangents& tangents) {
+  return partials.q.norm() * tangents.q.norm() + partials.qdot.norm() * tangents.qdot.norm() +
+         partials.v.norm() * tangents.v.norm() + partials.tactile.norm() * tangents.tactile.norm() +
+         partials.measured.norm() * tangents.measured.norm();
 }
 
 }  // namespace hbar

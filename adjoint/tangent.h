@@ -55,4 +55,7 @@ class TangentSweep {
                                             const Tangents& tangents, const Directions& directions,
                                             Eigen::Index i);
 
+/// Σ over the members of Tangents of ‖partials‖ ‖tangents‖: what rounding in dΨ is measured by.
+[[nodiscard]] double norm_product(const TrajectoryPartials& partials, const Tangents& tangents);
+
 }  // namespace hbar

@@ -16,6 +16,10 @@ struct Inputs {
   Eigen::VectorXd qdot0;  ///< their rates                                         [dof]
 };
 
+/// The step whose control measurements at the end of step k − 1 read: the one that ends there; at
+/// the start, the first.
+[[nodiscard]] constexpr int measured_step(int k) { return k > 0 ? k - 1 : 0; }
+
 /// From stage + 1 on, the exponential coordinates of `node` are in the other chart (chart.h).
 struct ChartSwitch {
   int stage = 0;
