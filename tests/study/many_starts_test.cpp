@@ -11,7 +11,9 @@
 
 #include "hbar/core/error.h"
 #include "hbar/scene/text_file.h"
+#include "hbar/solvers/ipopt.h"
 #include "tests/scene/temporary_folder.h"
+#include "tests/solvers/programs.h"
 #include "tests/support/numerics.h"
 
 namespace hbar::study {
@@ -171,6 +173,38 @@ TEST_F(ManyStarts, StopWhenTheFlagIsSet) {
   EXPECT_TRUE(report.results[0].has_value());
   EXPECT_FALSE(report.results[1].has_value());
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);  // no child is left
+}
+
+/// (x² − 1)² + x / 5, which is least near −1 and has another minimum near 1.
+class TwoMinima : public solvers::testing::Program {
+ public:
+  explicit TwoMinima(double start) : Program(Eigen::VectorXd::Constant(1, start), 0) {}
+  double objective(const Eigen::VectorXd& x) override {
+    return std::pow(x[0] * x[0] - 1.0, 2) + 0.2 * x[0];
+  }
+  void objective_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& g) override {
+    g[0] = 4.0 * x[0] * (x[0] * x[0] - 1.0) + 0.2;
+  }
+  void constraints(const Eigen::VectorXd&, Eigen::VectorXd&) override {}
+  void constraint_jacobian(const Eigen::VectorXd&, Eigen::VectorXd&) override {}
+};
+
+TEST_F(ManyStarts, FindTheBestOfSeveralMinimaWithIpopt) {
+  const Job job = [](int index, std::mt19937_64&) {
+    TwoMinima program(index == 2 ? -0.9 : 0.9 + 0.1 * index);
+    const solvers::IpoptResult result = solve_with_ipopt(program, {});
+    return JobResult{.converged = result.converged(),
+                     .objective = result.objective,
+                     .numbers = {result.x[0]},
+                     .status = std::string(to_string(result.status))};
+  };
+  const JobReport report =
+      run_jobs({.name = "minima", .count = 4, .columns = {"x"}, .workers = 2}, job);
+  ASSERT_TRUE(report.complete());
+  for (const auto& result : report.results) EXPECT_EQ(result->status, "optimal");
+  EXPECT_EQ(report.best(), 2);
+  EXPECT_NEAR(report.results[2]->numbers[0], -1.0241, 1e-4);
+  EXPECT_NEAR(report.results[0]->numbers[0], 0.9740, 1e-4);
 }
 
 TEST_F(ManyStarts, RefuseOptionsWithoutSense) {
