@@ -178,7 +178,7 @@ Information fisher_information(Simulator& simulator, const Trajectory& trajector
   fit.estimate.head(d.size()) = d;
   fit.scale.head(d.size()) = variables.scale;
   if (options.initial_state) {
-    const TrajectoryNames names = trajectory_names(simulator.model());
+    const TrajectoryNames names = trajectory_names(simulator);
     for (const std::string& name : names.q) fit.names.push_back("initial " + name);
     for (const std::string& name : names.qdot) fit.names.push_back("initial " + name);
     const Eigen::Index dof = simulator.model().dof();

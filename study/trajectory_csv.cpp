@@ -118,7 +118,8 @@ int read_step(const CsvCell& cell, const std::string& file, const TimeGrid& grid
 
 }  // namespace
 
-TrajectoryNames trajectory_names(const Model& model, std::vector<std::string> measured) {
+TrajectoryNames trajectory_names(const Simulator& simulator) {
+  const Model& model = simulator.model();
   TrajectoryNames names;
   for (int i = 0; i < model.dof(); ++i) {
     names.q.push_back(model.coordinate_name(i));
@@ -134,7 +135,7 @@ TrajectoryNames trajectory_names(const Model& model, std::vector<std::string> me
       }
     }
   }
-  names.measured = std::move(measured);
+  names.measured = simulator.measured_names();
   for (int i = 0; i < model.control_count(); ++i) {
     names.u.push_back("control." + model.control_name(i));
   }

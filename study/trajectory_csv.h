@@ -15,15 +15,12 @@ struct TrajectoryNames {
   std::vector<std::string> qdot;      ///< "rate.NAME"                               [dof]
   std::vector<std::string> v;         ///< "NAME.x", … of each end effector          [variables]
   std::vector<std::string> tactile;   ///< "SENSOR.POINT.shear0", …                  [readings]
-  std::vector<std::string> measured;  ///< as row_names gives them                   [measured]
+  std::vector<std::string> measured;  ///< Simulator::measured_names                  [measured]
   std::vector<std::string> u;         ///< "control.NAME"                            [controls]
 };
 
-/// The names of a model's numbers.
-///
-/// @param measured  of the simulation's measured rows, if it has any
-[[nodiscard]] TrajectoryNames trajectory_names(const Model& model,
-                                               std::vector<std::string> measured = {});
+/// The names of all numbers of a simulation.
+[[nodiscard]] TrajectoryNames trajectory_names(const Simulator& simulator);
 
 /// A table with a row per step k = 0 … N: time, coordinates, rates, end effectors, sensor readings,
 /// measured rows, and the controls that acted until then (none at k = 0).

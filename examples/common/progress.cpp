@@ -62,32 +62,4 @@ std::string iterations_csv(const std::vector<solvers::IterationInfo>& iterations
   return text;
 }
 
-std::string trajectory_csv(const Model& model, const TrajectoryValues& values) {
-  std::string text = "time";
-  const auto out = std::back_inserter(text);
-  for (const char* prefix : {"", "rate."}) {
-    for (int i = 0; i < model.dof(); ++i) {
-      fmt::format_to(out, ",{}{}", prefix, model.coordinate_name(i));
-    }
-  }
-  for (const EndEffector& point : model.end_effectors()) {
-    fmt::format_to(out, ",{0}.x,{0}.y,{0}.z", point.name);
-  }
-  for (int i = 0; i < model.control_count(); ++i) {
-    fmt::format_to(out, ",control.{}", model.control_name(i));
-  }
-  for (Eigen::Index k = 0; k < values.q.cols(); ++k) {
-    fmt::format_to(out, "\n{:.17g}", static_cast<double>(k) * values.h);
-    for (const Eigen::MatrixXd* field : {&values.q, &values.qdot, &values.v}) {
-      for (const double number : field->col(k)) {
-        fmt::format_to(out, ",{:.17g}", number);
-      }
-    }
-    for (Eigen::Index i = 0; i < values.u.rows(); ++i) {
-      fmt::format_to(out, ",{}", k == 0 ? "" : fmt::format("{:.17g}", values.u(i, k - 1)));
-    }
-  }
-  return text + '\n';
-}
-
 }  // namespace hbar::example

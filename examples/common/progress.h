@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/simulator.h"
 #include "hbar/solvers/ipopt.h"
 
 namespace hbar::example {
@@ -33,10 +32,6 @@ class Progress {
 
 /// A row per iterate.
 [[nodiscard]] std::string iterations_csv(const std::vector<solvers::IterationInfo>& iterations);
-
-/// A row per step: time, coordinates, rates, variables (x, y, z of each end effector), and the
-/// controls that acted until then.
-[[nodiscard]] std::string trajectory_csv(const Model& model, const TrajectoryValues& values);
 
 /// Makes the folder at once, so that a wrong name is known before the work.
 /// @throws IoError if it cannot be made

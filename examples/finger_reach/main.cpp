@@ -14,6 +14,7 @@
 #include "examples/common/process.h"
 #include "examples/common/progress.h"
 #include "hbar/scene/atomic_file.h"
+#include "hbar/study/trajectory_csv.h"
 #include "report.h"
 
 namespace hbar::finger_reach {
@@ -59,7 +60,7 @@ ExitCode run(const Arguments& arguments) {
   scene::write_file_atomically(arguments.out / "result.json", result_json(reach, outcome));
   scene::write_file_atomically(
       arguments.out / "trajectory.csv",
-      example::trajectory_csv(problem.parts().simulator.model(), outcome.values));
+      study::trajectory_csv(study::trajectory_names(problem.parts().simulator), outcome.values));
   scene::write_file_atomically(arguments.out / "iterations.csv",
                                example::iterations_csv(outcome.iterations));
   print(summary(reach, outcome));

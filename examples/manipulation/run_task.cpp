@@ -7,6 +7,7 @@
 
 #include "examples/common/progress.h"
 #include "hbar/scene/atomic_file.h"
+#include "hbar/study/trajectory_csv.h"
 
 namespace hbar::manipulation {
 namespace {
@@ -92,7 +93,8 @@ example::ExitCode run(const Task& task, const std::filesystem::path& out, int ma
   scene::write_file_atomically(out / "result.json", result_json(task, result));
   scene::write_file_atomically(
       out / "trajectory.csv",
-      example::trajectory_csv(result.problem->parts().simulator.model(), result.values));
+      study::trajectory_csv(study::trajectory_names(result.problem->parts().simulator),
+                            result.values));
   scene::write_file_atomically(out / "iterations.csv",
                                example::iterations_csv(progress.iterations()));
   example::print(summary(task, result));

@@ -31,7 +31,7 @@ TEST(TrajectoryCsv, IsReadAsItIsWritten) {
   Problem problem = testing::small_problem("bdf2");
   Simulator& simulator = problem.simulator;
   const TrajectoryValues values = simulator.values(simulator.rollout(problem.inputs).trajectory());
-  const TrajectoryNames names = trajectory_names(simulator.model());
+  const TrajectoryNames names = trajectory_names(simulator);
   const std::string text = trajectory_csv(names, values);
   const TrajectoryData data = read_trajectory_csv(
       text, "t.csv", names, {.h = values.h, .steps = static_cast<int>(values.u.cols())});
@@ -42,13 +42,17 @@ TEST(TrajectoryCsv, IsReadAsItIsWritten) {
   }
 }
 
-TEST(TrajectoryCsv, NamesSensorReadings) {
-  const Model model = testing::contact_model();
-  const TrajectoryNames names = trajectory_names(model, {"power"});
+TEST(TrajectoryCsv, NamesSensorReadingsAndMeasurements) {
+  SimulationOptions options;
+  options.measurements = {CentreOfMass{.name = "centre"}, MotorPower{.name = "power", .motor = 1}};
+  const Simulator simulator(testing::contact_model(), ParameterSet(), options);
+  const Model& model = simulator.model();
+  const TrajectoryNames names = trajectory_names(simulator);
   EXPECT_EQ(static_cast<int>(names.tactile.size()), model.tactile_count());
   EXPECT_EQ(names.tactile[4], "skin.1.shear1");
   EXPECT_EQ(names.v[3], "tip.x");
-  EXPECT_EQ(names.measured, std::vector<std::string>{"power"});
+  EXPECT_EQ(names.measured,
+            (std::vector<std::string>{"centre.x", "centre.y", "centre.z", "power"}));
 }
 
 TEST(TrajectoryCsv, MayMeasureSomeNumbersAtSomeSteps) {

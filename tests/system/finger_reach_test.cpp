@@ -12,6 +12,7 @@
 #include "hbar/scene/build_model.h"
 #include "hbar/scene/read_xml.h"
 #include "hbar/solvers/gradient_check.h"
+#include "hbar/study/trajectory_csv.h"
 
 namespace hbar::finger_reach {
 namespace {
@@ -99,7 +100,8 @@ TEST(FingerReach, ReachesItsTargetsWithTheLeastEffort) {
   const std::string json = result_json(reach, outcome);
   EXPECT_NE(json.find("\"converged\": true"), std::string::npos);
   EXPECT_NE(summary(reach, outcome).find("target 4"), std::string::npos);
-  const std::string csv = example::trajectory_csv(model, outcome.values);
+  const std::string csv =
+      study::trajectory_csv(study::trajectory_names(problem.parts().simulator), outcome.values);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), kSteps + 2);
   const std::string rows = example::iterations_csv(outcome.iterations);
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), outcome.result.iterations + 2);
