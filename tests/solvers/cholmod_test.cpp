@@ -29,7 +29,7 @@ SparseMatrix any_general(unsigned seed) { return random_sparse(60, 3, seed); }
 SparseMatrix half_an_arrow(int size) { return arrow_matrix(size).triangularView<Eigen::Upper>(); }
 
 /// One row of the table of factories.
-struct Entry {
+struct CholmodEntry {
   std::string name;
   testing::Maker make;
   SparseMatrix (*matrix)(unsigned seed);  ///< one that it is meant for
@@ -43,7 +43,7 @@ const std::vector<Ordering> kSymmetric = {Ordering::kDefault, Ordering::kNatural
 const std::vector<Ordering> kAll = {Ordering::kDefault, Ordering::kNatural, Ordering::kAmd,
                                     Ordering::kColamd,  Ordering::kMetis,   Ordering::kNested};
 
-std::vector<Entry> every_factory() {
+std::vector<CholmodEntry> every_factory() {
   return {
       {"cholmod_llt", make_cholmod_llt, any_definite, arrow_matrix, kSymmetric, Ordering::kAmd},
       {"cholmod_supernodal", make_cholmod_supernodal, any_definite, arrow_matrix, kSymmetric,
@@ -54,7 +54,7 @@ std::vector<Entry> every_factory() {
   };
 }
 
-class EveryCholmod : public ::testing::TestWithParam<Entry> {};
+class EveryCholmod : public ::testing::TestWithParam<CholmodEntry> {};
 
 INSTANTIATE_TEST_SUITE_P(Factories, EveryCholmod, ::testing::ValuesIn(every_factory()),
                          [](const auto& entry) { return entry.param.name; });

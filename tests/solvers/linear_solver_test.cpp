@@ -24,13 +24,13 @@ using testing::random_sparse;
 const std::vector<int> kBlocks = {4, 1, 7, 4, 4, 12, 3, 4};
 
 /// One row of the table of solvers.
-struct Entry {
+struct GeneralEntry {
   std::string name;
   bool general;  ///< takes any pattern
   std::function<std::unique_ptr<LinearSolver>(const std::vector<int>&)> make;
 };
 
-std::vector<Entry> every_solver() {
+std::vector<GeneralEntry> every_solver() {
   return {
       {"block_substitution", false, make_block_substitution},
       {"klu", true, [](const std::vector<int>&) { return make_klu(); }},
@@ -40,7 +40,7 @@ std::vector<Entry> every_solver() {
   };
 }
 
-class EverySolver : public ::testing::TestWithParam<Entry> {
+class EverySolver : public ::testing::TestWithParam<GeneralEntry> {
  protected:
   [[nodiscard]] static std::unique_ptr<LinearSolver> make(const std::vector<int>& blocks) {
     return GetParam().make(blocks);
@@ -57,7 +57,7 @@ class EverySolver : public ::testing::TestWithParam<Entry> {
 INSTANTIATE_TEST_SUITE_P(Solvers, EverySolver, ::testing::ValuesIn(every_solver()),
                          [](const auto& entry) { return entry.param.name; });
 
-void expect_agrees_with_dense(LinearSolver& solver, const SparseMatrix& A) {
+void expect_solves_like_dense(LinearSolver& solver, const SparseMatrix& A) {
   const Eigen::MatrixXd dense(A);
   for (const int count : {1, 5}) {
     const Eigen::MatrixXd B = random_dense(static_cast<int>(A.rows()), count, 11);
@@ -77,20 +77,20 @@ TEST_P(EverySolver, IsNamedAsInTheTable) { EXPECT_EQ(make(kBlocks)->name(), GetP
 TEST_P(EverySolver, AgreesWithDenseLuOnBlockLowerTriangularMatrices) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const SparseMatrix A = random_block_lower(kBlocks, seed);
-    expect_agrees_with_dense(*factorized(A, kBlocks), A);
+    expect_solves_like_dense(*factorized(A, kBlocks), A);
   }
 }
 
 TEST_P(EverySolver, AgreesWithDenseLuOnOneDenseBlock) {
   const SparseMatrix A = random_block_lower({20}, 5);
-  expect_agrees_with_dense(*factorized(A, {20}), A);
+  expect_solves_like_dense(*factorized(A, {20}), A);
 }
 
 TEST_P(EverySolver, AgreesWithDenseLuOnUnsymmetricMatricesOrRefusesThem) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const SparseMatrix A = random_sparse(80, 4, seed);
     if (GetParam().general) {
-      expect_agrees_with_dense(*factorized(A, {}), A);
+      expect_solves_like_dense(*factorized(A, {}), A);
     } else {
       EXPECT_THROW(factorized(A, {40, 40}), InvalidInput);
     }
@@ -134,7 +134,7 @@ TEST_P(EverySolver, AnalysesOnceForManyFactorisations) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     A = random_block_lower(kBlocks, seed);
     solver->factorize(A);
-    expect_agrees_with_dense(*solver, A);
+    expect_solves_like_dense(*solver, A);
   }
   EXPECT_EQ(solver->statistics().analyses, 1);
   EXPECT_EQ(solver->statistics().factorizations, 3);
@@ -176,7 +176,7 @@ TEST_P(EverySolver, RecoversAfterASingularMatrix) {
   const auto solver = factorized(good, {2, 2});
   EXPECT_THROW(solver->factorize(bad), NumericalFailure);
   solver->factorize(good);
-  expect_agrees_with_dense(*solver, good);
+  expect_solves_like_dense(*solver, good);
 }
 
 TEST_P(EverySolver, RefusesEntriesThatAreNotNumbers) {

@@ -16,12 +16,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// g and its Jacobian from functions; keeps the points at which the Jacobian was taken.
-class System final : public NewtonSystem {
+class ScriptedSystem final : public NewtonSystem {
  public:
   using G = std::function<void(const VectorXd&, VectorXd&)>;
   using J = std::function<void(const VectorXd&, MatrixXd&)>;
 
-  System(Eigen::Index size, G g, J jacobian)
+  ScriptedSystem(Eigen::Index size, G g, J jacobian)
       : g_(std::move(g)), jacobian_(std::move(jacobian)), matrix_(size, size), lu_(size) {}
 
   void residual(const VectorXd& x, VectorXd& g) override { g_(x, g); }
@@ -43,18 +43,18 @@ class System final : public NewtonSystem {
 };
 
 /// One equation in one unknown.
-System scalar_system(std::function<double(double)> g, std::function<double(double)> slope) {
+ScriptedSystem scalar_system(std::function<double(double)> g, std::function<double(double)> slope) {
   return {1, [g](const VectorXd& x, VectorXd& out) { out[0] = g(x[0]); },
           [slope](const VectorXd& x, MatrixXd& J) { J(0, 0) = slope(x[0]); }};
 }
 
-System arc_tangent() {
+ScriptedSystem arc_tangent() {
   return scalar_system([](double x) { return std::atan(x); },
                        [](double x) { return 1.0 / (1.0 + x * x); });
 }
 
 /// 10 (x₁ − x₀²) and 1 − x₀, each times a scale of its own.
-System rosenbrock(double scale0 = 1.0, double scale1 = 1.0) {
+ScriptedSystem rosenbrock(double scale0 = 1.0, double scale1 = 1.0) {
   return {2,
           [=](const VectorXd& x, VectorXd& g) {
             g[0] = scale0 * 10.0 * (x[1] - x[0] * x[0]);
@@ -66,14 +66,14 @@ System rosenbrock(double scale0 = 1.0, double scale1 = 1.0) {
 }
 
 /// A mass on a soft spring pushed against a stiff one that begins at 1: x − 5 + k max(0, x − 1).
-System stiff_spring(double k) {
+ScriptedSystem stiff_spring(double k) {
   return scalar_system([k](double x) { return x - 5.0 + k * std::max(0.0, x - 1.0); },
                        [k](double x) { return 1.0 + (x > 1.0 ? k : 0.0); });
 }
 
 /// Iterates by running with 1, 2, … corrections allowed.
-std::vector<double> errors_by_iteration(System& system, const VectorXd& start, const VectorXd& root,
-                                        int count) {
+std::vector<double> errors_by_iteration(ScriptedSystem& system, const VectorXd& start,
+                                        const VectorXd& root, int count) {
   std::vector<double> errors;
   for (int limit = 1; limit <= count; ++limit) {
     NewtonOptions options;
@@ -88,7 +88,7 @@ std::vector<double> errors_by_iteration(System& system, const VectorXd& start, c
 
 TEST(Newton, ConvergesQuadratically) {
   // x³ = 8 from 2.5: the error constant is g''/2g' = 1/2 at the root.
-  System system =
+  ScriptedSystem system =
       scalar_system([](double x) { return x * x * x - 8.0; }, [](double x) { return 3.0 * x * x; });
   const std::vector<double> errors =
       errors_by_iteration(system, VectorXd::Constant(1, 2.5), VectorXd::Constant(1, 2.0), 3);
@@ -99,7 +99,7 @@ TEST(Newton, ConvergesQuadratically) {
 
 TEST(Newton, SolvesALinearSystemInOneCorrectionWithOneJacobian) {
   const MatrixXd A{{4.0, 1.0}, {2.0, 3.0}};
-  System system(
+  ScriptedSystem system(
       2, [&](const VectorXd& x, VectorXd& g) { g = A * x - VectorXd::Ones(2); },
       [&](const VectorXd&, MatrixXd& J) { J = A; });
   VectorXd x = VectorXd::Constant(2, 1e3);
@@ -112,7 +112,7 @@ TEST(Newton, SolvesALinearSystemInOneCorrectionWithOneJacobian) {
 
 TEST(Newton, FindsTheRootOfTheArcTangentFromWhereFullStepsDiverge) {
   for (const double start : {1.5, 10.0, -300.0}) {
-    System system = arc_tangent();
+    ScriptedSystem system = arc_tangent();
     VectorXd x = VectorXd::Constant(1, start);
     const NewtonReport report = Newton(1).solve(system, {}, x);
     EXPECT_TRUE(report.converged()) << start << ": " << describe(report.status);
@@ -125,7 +125,7 @@ TEST(Newton, EveryAcceptedCorrectionIsShorterThanTheOneBefore) {
   // The natural monotonicity test: with one Jacobian the simplified correction shrinks.
   double previous = std::numeric_limits<double>::infinity();
   for (int limit = 1; limit <= 8; ++limit) {
-    System system = arc_tangent();
+    ScriptedSystem system = arc_tangent();
     NewtonOptions options;
     options.max_iter = limit;
     VectorXd x = VectorXd::Constant(1, 20.0);
@@ -137,7 +137,7 @@ TEST(Newton, EveryAcceptedCorrectionIsShorterThanTheOneBefore) {
 }
 
 TEST(Newton, SolvesRosenbrocksSystem) {
-  System system = rosenbrock();
+  ScriptedSystem system = rosenbrock();
   VectorXd x(2);
   x << -1.2, 1.0;
   const NewtonReport report = Newton(2).solve(system, {}, x);
@@ -151,8 +151,9 @@ TEST(Newton, TakesTheSameStepsWhateverTheScaleOfEachEquation) {
   options.tol = 1e300;  // the only measure that depends on the scale
   for (int limit = 1; limit <= 6; ++limit) {
     options.max_iter = limit;
-    System system = rosenbrock();
-    System scaled = rosenbrock(std::ldexp(1.0, 40), std::ldexp(1.0, -30));  // exact in binary
+    ScriptedSystem system = rosenbrock();
+    ScriptedSystem scaled =
+        rosenbrock(std::ldexp(1.0, 40), std::ldexp(1.0, -30));  // exact in binary
     VectorXd x(2);
     x << -1.2, 1.0;
     VectorXd x_scaled = x;
@@ -168,7 +169,7 @@ TEST(Newton, ConvergesOnAStiffSpringFromFarAway) {
   constexpr double kStiffness = 1e8;
   const double root = (5.0 + kStiffness) / (1.0 + kStiffness);
   for (const double start : {0.0, 0.999999, 4.0, 1e6}) {
-    System system = stiff_spring(kStiffness);
+    ScriptedSystem system = stiff_spring(kStiffness);
     VectorXd x = VectorXd::Constant(1, start);
     const NewtonReport report = Newton(1).solve(system, {}, x);
     EXPECT_TRUE(report.converged()) << start << ": " << describe(report.status);
@@ -178,7 +179,7 @@ TEST(Newton, ConvergesOnAStiffSpringFromFarAway) {
 }
 
 TEST(Newton, ReportsWhatItDid) {
-  System system = rosenbrock();
+  ScriptedSystem system = rosenbrock();
   VectorXd x(2);
   x << -1.2, 1.0;
   const NewtonReport report = Newton(2).solve(system, {}, x);
@@ -189,7 +190,7 @@ TEST(Newton, ReportsWhatItDid) {
 }
 
 TEST(Newton, NamesTheCoordinateThatMovesMost) {
-  System system(
+  ScriptedSystem system(
       3, [](const VectorXd& x, VectorXd& g) { g = x - VectorXd::Unit(3, 1) * 1e3; },
       [](const VectorXd&, MatrixXd& J) { J.setIdentity(); });
   NewtonOptions options;
@@ -201,7 +202,7 @@ TEST(Newton, NamesTheCoordinateThatMovesMost) {
 }
 
 TEST(Newton, StopsAtTheIterationLimit) {
-  System system = rosenbrock();
+  ScriptedSystem system = rosenbrock();
   NewtonOptions options;
   options.max_iter = 2;
   VectorXd x(2);
@@ -213,7 +214,7 @@ TEST(Newton, StopsAtTheIterationLimit) {
 }
 
 TEST(Newton, StallsWhereThereIsNoRoot) {
-  System system =
+  ScriptedSystem system =
       scalar_system([](double x) { return x * x + 1.0; }, [](double x) { return 2.0 * x; });
   NewtonOptions options;
   options.max_ls = 3;
@@ -224,7 +225,7 @@ TEST(Newton, StallsWhereThereIsNoRoot) {
 }
 
 TEST(Newton, SaysThatAJacobianIsSingular) {
-  System system =
+  ScriptedSystem system =
       scalar_system([](double x) { return x * x - 1.0; }, [](double x) { return 2.0 * x; });
   VectorXd x = VectorXd::Zero(1);
   const NewtonReport report = Newton(1).solve(system, {}, x);
@@ -234,7 +235,7 @@ TEST(Newton, SaysThatAJacobianIsSingular) {
 }
 
 TEST(Newton, SaysThatAResidualIsNotFinite) {
-  System system =
+  ScriptedSystem system =
       scalar_system([](double x) { return std::log(x); }, [](double x) { return 1.0 / x; });
   VectorXd x = VectorXd::Constant(1, -1.0);
   const NewtonReport report = Newton(1).solve(system, {}, x);
@@ -243,7 +244,7 @@ TEST(Newton, SaysThatAResidualIsNotFinite) {
 }
 
 TEST(Newton, ShortensACorrectionThatLeavesTheResidualsDomain) {
-  System system =
+  ScriptedSystem system =
       scalar_system([](double x) { return std::log(x); }, [](double x) { return 1.0 / x; });
   VectorXd x = VectorXd::Constant(1, 5.0);  // the full step leads to 5 − 5 log 5 < 0
   const NewtonReport report = Newton(1).solve(system, {}, x);
@@ -252,8 +253,8 @@ TEST(Newton, ShortensACorrectionThatLeavesTheResidualsDomain) {
 }
 
 TEST(Newton, ConvergesToRoundingWhereTheToleranceCannotBeReached) {
-  System system = scalar_system([](double x) { return 1e10 * (std::exp(x) - 3.0); },
-                                [](double x) { return 1e10 * std::exp(x); });
+  ScriptedSystem system = scalar_system([](double x) { return 1e10 * (std::exp(x) - 3.0); },
+                                        [](double x) { return 1e10 * std::exp(x); });
   NewtonOptions options;
   options.tol = 1e-30;
   VectorXd x = VectorXd::Constant(1, 2.0);
@@ -275,7 +276,7 @@ TEST(Newton, DescribesEveryStatus) {
 
 #if HBAR_COUNTS_MALLOC  // not under sanitizers, which own malloc
 TEST(Newton, AllocatesNothing) {
-  System system = rosenbrock();
+  ScriptedSystem system = rosenbrock();
   Newton newton(2);
   const NewtonOptions options;
   VectorXd x(2);
