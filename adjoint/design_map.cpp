@@ -151,6 +151,15 @@ InertiaChart::InertiaChart(const ParameterSet& set, double least_share)
   }
 }
 
+bool InertiaChart::depends(Eigen::Index parameter, Eigen::Index variable) const {
+  for (const Eigen::Index first : first_moments_) {
+    if (parameter >= first && parameter < first + 3 && variable >= first && variable < first + 3) {
+      return parameter != variable;
+    }
+  }
+  return parameter == variable;
+}
+
 Eigen::VectorXd InertiaChart::parameters(const Eigen::VectorXd& d) const {
   Eigen::VectorXd p = d;
   for (const Eigen::Index first : first_moments_) {

@@ -45,6 +45,11 @@ class DesignMap {
   /// @param d  design variables                                                   [d]
   /// @returns  one column per design variable                               [parameters x d]
   [[nodiscard]] virtual Eigen::MatrixXd jacobian(const Eigen::VectorXd& d) const = 0;
+  /// Whether a parameter may change with a variable at all; where not, sparse matrices have no
+  /// entry. By default every one may with every one.
+  [[nodiscard]] virtual bool depends(Eigen::Index /*parameter*/, Eigen::Index /*variable*/) const {
+    return true;
+  }
   /// Σ_i y_i ∂²p_i/∂d², which exact Hessians need.
   ///
   /// @param d  design variables                                                   [d]
@@ -63,6 +68,9 @@ class IdentityDesignMap final : public DesignMap {
   [[nodiscard]] const DesignVariables& variables() const override { return variables_; }
   [[nodiscard]] Eigen::Index parameter_count() const override { return variables_.size(); }
   [[nodiscard]] Eigen::VectorXd parameters(const Eigen::VectorXd& d) const override { return d; }
+  [[nodiscard]] bool depends(Eigen::Index parameter, Eigen::Index variable) const override {
+    return parameter == variable;
+  }
   [[nodiscard]] Eigen::MatrixXd jacobian(const Eigen::VectorXd& d) const override;
   /// Zero: the map is linear.
   [[nodiscard]] Eigen::MatrixXd hessian(const Eigen::VectorXd& d,
@@ -87,6 +95,7 @@ class InertiaChart final : public DesignMap {
 
   [[nodiscard]] const DesignVariables& variables() const override { return variables_; }
   [[nodiscard]] Eigen::Index parameter_count() const override { return variables_.size(); }
+  [[nodiscard]] bool depends(Eigen::Index parameter, Eigen::Index variable) const override;
   [[nodiscard]] Eigen::VectorXd parameters(const Eigen::VectorXd& d) const override;
   [[nodiscard]] Eigen::MatrixXd jacobian(const Eigen::VectorXd& d) const override;
   /// Zero: the map is linear.

@@ -34,7 +34,7 @@ ExitCode run(const Arguments& arguments) {
   // 1. The problem.
   example::make_folder(arguments.out);
   Reach reach = make_reach(arguments.scene, arguments.steps);
-  DesignProblem& problem = *reach.problem;
+  Transcription& problem = *reach.problem;
   Outcome outcome;
   outcome.start = problem.variables().start;
   outcome.start_objective = problem.objective(outcome.start);
@@ -60,7 +60,7 @@ ExitCode run(const Arguments& arguments) {
   scene::write_file_atomically(arguments.out / "result.json", result_json(reach, outcome));
   scene::write_file_atomically(
       arguments.out / "trajectory.csv",
-      study::trajectory_csv(study::trajectory_names(problem.parts().simulator), outcome.values));
+      study::trajectory_csv(study::trajectory_names(problem.problem().simulator), outcome.values));
   scene::write_file_atomically(arguments.out / "iterations.csv",
                                example::iterations_csv(outcome.iterations));
   print(summary(reach, outcome));

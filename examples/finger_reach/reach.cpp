@@ -95,14 +95,14 @@ Reach make_reach(const std::filesystem::path& scene_file, int steps) {
   simulation.integrator = "bdf2";
   simulation.h = kDuration / steps;
   simulation.steps = steps;
-  out.problem = std::make_unique<DesignProblem>(
-      DesignProblemParts{.simulator = Simulator(model, std::move(set), simulation),
-                         .map = std::move(map),
-                         .objective = Objective(effort()),
-                         .constraints = std::move(constraints),
-                         .controls = std::move(controls),
-                         .q0 = kStart,
-                         .qdot0 = {}});
+  out.problem =
+      transcribe(TrajectoryProblem{.simulator = Simulator(model, std::move(set), simulation),
+                                   .map = std::move(map),
+                                   .objective = Objective(effort()),
+                                   .constraints = std::move(constraints),
+                                   .controls = std::move(controls),
+                                   .q0 = kStart,
+                                   .qdot0 = {}});
   return out;
 }
 

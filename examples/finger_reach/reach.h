@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "finger.h"
-#include "hbar/adjoint/design_problem.h"
+#include "hbar/adjoint/transcription.h"
 #include "hbar/solvers/ipopt.h"
 
 namespace hbar::finger_reach {
@@ -19,7 +19,7 @@ struct Target {
 struct Reach {
   std::array<Phalanx, 3> phalanges;
   std::vector<Target> targets;
-  std::unique_ptr<DesignProblem> problem;
+  std::unique_ptr<Transcription> problem;
 };
 
 constexpr double kDuration = 3.0;      ///< s

@@ -41,7 +41,7 @@ std::vector<Violated> violations(const Reach& reach, const Outcome& outcome, dou
 }
 
 double solver_time(const Outcome& outcome) {
-  const DesignProblemTimes& times = outcome.times;
+  const TranscriptionTimes& times = outcome.times;
   return outcome.result.elapsed - times.simulation - times.gradient - times.jacobian;
 }
 
@@ -79,7 +79,7 @@ double finger_mass(const Reach& reach, const Eigen::VectorXd& x) {
 
 std::string summary(const Reach& reach, const Outcome& outcome) {
   const solvers::IpoptResult& result = outcome.result;
-  const DesignVariables& design = reach.problem->parts().map->variables();
+  const DesignVariables& design = reach.problem->problem().map->variables();
   const double length = finger_length(reach, result.x);
   std::string text;
   add(text, fmt::format("\n{}", result.message));
@@ -101,7 +101,7 @@ std::string summary(const Reach& reach, const Outcome& outcome) {
                           i + 1, reach.targets[static_cast<std::size_t>(i)].step * outcome.values.h,
                           1e3 * errors[i], 100.0 * errors[i] / length));
   }
-  const DesignProblemTimes& times = outcome.times;
+  const TranscriptionTimes& times = outcome.times;
   add(text, fmt::format("time:        {:.2f} s: simulation {:.2f} s ({}), gradient {:.2f} s ({}), "
                         "Jacobian {:.2f} s ({}), Ipopt {:.2f} s",
                         result.elapsed, times.simulation, times.simulations, times.gradient,
@@ -111,8 +111,8 @@ std::string summary(const Reach& reach, const Outcome& outcome) {
 
 std::string result_json(const Reach& reach, const Outcome& outcome) {
   const solvers::IpoptResult& result = outcome.result;
-  const DesignVariables& design = reach.problem->parts().map->variables();
-  const SimulationOptions& simulation = reach.problem->parts().simulator.options();
+  const DesignVariables& design = reach.problem->problem().map->variables();
+  const SimulationOptions& simulation = reach.problem->problem().simulator.options();
   Json out = {{"status", solvers::to_string(result.status)},
               {"converged", result.converged()},
               {"feasible", result.feasible},
@@ -152,7 +152,7 @@ std::string result_json(const Reach& reach, const Outcome& outcome) {
   for (int b = 0; b < reach.problem->block_count(); ++b) {
     out["controls"].push_back(list(result.x.segment(first + 4 * b, 4)));
   }
-  const DesignProblemTimes& times = outcome.times;
+  const TranscriptionTimes& times = outcome.times;
   out["seconds"] = {{"total", result.elapsed},
                     {"simulation", times.simulation},
                     {"gradient", times.gradient},

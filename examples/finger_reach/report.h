@@ -15,7 +15,7 @@ struct Outcome {
   solvers::IpoptResult result;                     ///< x after
   TrajectoryValues values;                         ///< of x after
   std::vector<solvers::IterationInfo> iterations;  ///< one per iterate, the start first
-  DesignProblemTimes times;                        ///< without Ipopt's own
+  TranscriptionTimes times;                        ///< without Ipopt's own
 };
 
 /// Length of the finger, from the knuckle to the tip, m.

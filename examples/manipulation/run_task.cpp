@@ -51,7 +51,7 @@ std::string summary(const Task& task, const TaskResult& result) {
     text += fmt::format("length:      {:<16} {:.2f} mm\n", task.phalanges[i].body,
                         1e3 * lengths[static_cast<Eigen::Index>(i)]);
   }
-  const DesignProblemTimes& times = result.problem->times();
+  const TranscriptionTimes& times = result.problem->times();
   text += fmt::format("time:        {:.1f} s, of which {:.1f} s simulations, {:.1f} s gradients\n",
                       result.last.elapsed, times.simulation, times.gradient);
   return text + (result.reached(task) ? "goals:       all reached\n" : "goals:       MISSED\n");
@@ -93,7 +93,7 @@ example::ExitCode run(const Task& task, const std::filesystem::path& out, int ma
   scene::write_file_atomically(out / "result.json", result_json(task, result));
   scene::write_file_atomically(
       out / "trajectory.csv",
-      study::trajectory_csv(study::trajectory_names(result.problem->parts().simulator),
+      study::trajectory_csv(study::trajectory_names(result.problem->problem().simulator),
                             result.values));
   scene::write_file_atomically(out / "iterations.csv",
                                example::iterations_csv(progress.iterations()));
@@ -122,7 +122,7 @@ TaskResult solve_task(const Task& task, const TaskOptions& options) {
   TaskResult out;
   {
     const auto full = make_problem(task, 1.0);
-    out.start_errors = goal_errors(task, full->parts().simulator.model(),
+    out.start_errors = goal_errors(task, full->problem().simulator.model(),
                                    full->trajectory_values(full->variables().start));
   }
   Eigen::VectorXd x;
@@ -142,7 +142,7 @@ TaskResult solve_task(const Task& task, const TaskOptions& options) {
     }
   }
   out.values = out.problem->trajectory_values(out.last.x);
-  out.errors = goal_errors(task, out.problem->parts().simulator.model(), out.values);
+  out.errors = goal_errors(task, out.problem->problem().simulator.model(), out.values);
   return out;
 }
 

@@ -15,7 +15,7 @@ struct TaskOptions {
 
 /// What came of a task.
 struct TaskResult {
-  std::unique_ptr<DesignProblem> problem;  ///< of the last stage
+  std::unique_ptr<Transcription> problem;  ///< of the last stage
   solvers::IpoptResult last;               ///< of the last stage
   int iterations = 0;                      ///< of all stages
   double start_objective = 0.0;            ///< of the first guess, first stage

@@ -116,7 +116,7 @@ std::vector<FixedParameter> fixed_parameters(const Task& task, double contact_sc
 
 }  // namespace
 
-std::unique_ptr<DesignProblem> make_problem(const Task& task, double contact_scale,
+std::unique_ptr<Transcription> make_problem(const Task& task, double contact_scale,
                                             const Eigen::VectorXd& start) {
   const scene::Scene scene = scene::read_scene(task.scene);
   const Model model = scene::build_model(scene);
@@ -146,15 +146,14 @@ std::unique_ptr<DesignProblem> make_problem(const Task& task, double contact_sca
   Objective objective(control_changes(task.control_scale));
   objective.add(goal_paths(task, model, q0));
   objective.add(squared_velocity(task.velocity_weight)).add(rest_at_end(task.rest_weight));
-  return std::make_unique<DesignProblem>(
-      DesignProblemParts{.simulator = Simulator(model, set, simulation),
-                         .map = std::move(map),
-                         .objective = std::move(objective),
-                         .constraints = {},
-                         .controls = std::move(controls),
-                         .q0 = q0,
-                         .qdot0 = {},
-                         .design_weight = 1e-2});
+  return transcribe(TrajectoryProblem{.simulator = Simulator(model, set, simulation),
+                                      .map = std::move(map),
+                                      .objective = std::move(objective),
+                                      .constraints = {},
+                                      .controls = std::move(controls),
+                                      .q0 = q0,
+                                      .qdot0 = {},
+                                      .design_weight = 1e-2});
 }
 
 Eigen::VectorXd goal_errors(const Task& task, const Model& model, const TrajectoryValues& values) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/design_problem.h"
+#include "hbar/adjoint/transcription.h"
 #include "length_map.h"
 
 namespace hbar::manipulation {
@@ -57,7 +57,7 @@ struct Task {
 /// @param contact_scale  s of the scaled bodies
 /// @param start          where to begin; empty: the first guess                       [x]
 /// @throws InvalidInput if the task does not suit its scene
-[[nodiscard]] std::unique_ptr<DesignProblem> make_problem(const Task& task, double contact_scale,
+[[nodiscard]] std::unique_ptr<Transcription> make_problem(const Task& task, double contact_scale,
                                                           const Eigen::VectorXd& start = {});
 
 /// |coordinate − target| of each goal at the end.                                       [goals]

@@ -1,4 +1,4 @@
-#include "hbar/adjoint/design_problem.h"
+#include "hbar/adjoint/shooting.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using Field = PartialPlace::Field;
 using testing::kInfinity;
 
 /// Every field is read by some row; the last block of controls is a short one.
-DesignProblemParts small_parts(const std::string& integrator) {
+TrajectoryProblem small_parts(const std::string& integrator) {
   Problem problem = testing::make_problem(testing::small_model(), integrator, 0.02, 14);
   const Model model = problem.simulator.model();
   ParameterSet set = ParameterSet::named(
@@ -53,10 +53,10 @@ DesignProblemParts small_parts(const std::string& integrator) {
           .design_weight = 0.3};
 }
 
-class DesignProblemOfEveryIntegrator : public ::testing::TestWithParam<std::string> {};
+class ShootingOfEveryIntegrator : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(DesignProblemOfEveryIntegrator, HasRightGradientsAndJacobians) {
-  DesignProblem problem(small_parts(GetParam()));
+TEST_P(ShootingOfEveryIntegrator, HasRightGradientsAndJacobians) {
+  Shooting problem(small_parts(GetParam()), {});
   solvers::validate(problem);
   Eigen::VectorXd x = problem.variables().start;
   x[0] += 0.01;  // away from the design's start, where the weight on it has no gradient
@@ -65,16 +65,16 @@ TEST_P(DesignProblemOfEveryIntegrator, HasRightGradientsAndJacobians) {
   EXPECT_GT(check.slope, 1.9) << check.slope_name;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DesignProblemOfEveryIntegrator,
+INSTANTIATE_TEST_SUITE_P(All, ShootingOfEveryIntegrator,
                          ::testing::Values("bdf1", "sdirk2", "bdf2"),
                          [](const auto& c) { return c.param; });
 
-TEST(DesignProblem, NamesAndPlacesItsVariables) {
-  DesignProblem problem(small_parts("bdf2"));
+TEST(Shooting, NamesAndPlacesItsVariables) {
+  Shooting problem(small_parts("bdf2"), {});
   const solvers::NlpVariables& variables = problem.variables();
-  const Eigen::Index d = problem.parts().map->variables().size();
-  const int controls = problem.parts().simulator.model().control_count();
-  EXPECT_EQ(problem.block_count(), 4);
+  const Eigen::Index d = problem.problem().map->variables().size();
+  const int controls = problem.problem().simulator.model().control_count();
+  EXPECT_EQ(problem.input_variables().block_count(), 4);
   ASSERT_EQ(variables.start.size(), d + 4 * controls);
   EXPECT_EQ(variables.names[0], "joint.hinge.translation.x");
   EXPECT_EQ(variables.names[static_cast<std::size_t>(d + controls)], "control.hinge from step 4");
@@ -85,29 +85,29 @@ TEST(DesignProblem, NamesAndPlacesItsVariables) {
   EXPECT_EQ(inputs.u(0, 7), 7.0);
   EXPECT_NE(inputs.u(0, 3), 7.0);
   EXPECT_NE(inputs.u(0, 8), 7.0);
-  EXPECT_EQ(inputs.q0, problem.parts().q0);
+  EXPECT_EQ(inputs.q0, problem.problem().q0);
 }
 
-TEST(DesignProblem, LeavesOutWhatLaterControlsCannotDo) {
-  DesignProblem problem(small_parts("bdf2"));
-  const Eigen::Index d = problem.parts().map->variables().size();
-  const int controls = problem.parts().simulator.model().control_count();
+TEST(Shooting, LeavesOutWhatLaterControlsCannotDo) {
+  Shooting problem(small_parts("bdf2"), {});
+  const Eigen::Index d = problem.problem().map->variables().size();
+  const int controls = problem.problem().simulator.model().control_count();
   const auto& names = problem.constraint_limits().names;
   const auto entries = [&](const std::string& name) {
     const auto row = static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
     const auto& rows = problem.jacobian_pattern().rows;
     return std::count(rows.begin(), rows.end(), row);
   };
-  EXPECT_EQ(entries("mass"), d);
-  EXPECT_EQ(entries("hinge at step 0"), d);
+  EXPECT_EQ(entries("mass"), 2);
+  EXPECT_EQ(entries("hinge at step 0"), 0);
   EXPECT_EQ(entries("hinge at step 4"), d + controls);
   EXPECT_EQ(entries("corner.x at step 5"), d + 2 * controls);
   EXPECT_EQ(entries("power"), d + 2 * controls);
   EXPECT_EQ(entries("tip.z at step 14"), d + 4 * controls);
 }
 
-TEST(DesignProblem, SimulatesAPointOnceAndDifferentiatesWhenAsked) {
-  DesignProblem problem(small_parts("bdf1"));
+TEST(Shooting, SimulatesAPointOnceAndDifferentiatesWhenAsked) {
+  Shooting problem(small_parts("bdf1"), {});
   const Eigen::VectorXd x = problem.variables().start;
   Eigen::VectorXd c(problem.constraint_limits().lower.size());
   EXPECT_GT(problem.objective(x), 0.0);
@@ -120,8 +120,8 @@ TEST(DesignProblem, SimulatesAPointOnceAndDifferentiatesWhenAsked) {
   EXPECT_EQ(problem.times().gradients, 1);
 }
 
-TEST(DesignProblem, FailsAPointThatCannotBe) {
-  DesignProblem problem(small_parts("bdf1"));
+TEST(Shooting, FailsAPointThatCannotBe) {
+  Shooting problem(small_parts("bdf1"), {});
   const Eigen::VectorXd start = problem.variables().start;
   const auto& names = problem.variables().names;
   const auto mass = std::find(names.begin(), names.end(), "body.arm.mass") - names.begin();
@@ -138,43 +138,43 @@ TEST(DesignProblem, FailsAPointThatCannotBe) {
   EXPECT_THROW(static_cast<void>(problem.objective(start.head(3))), InvalidInput);
 }
 
-TEST(DesignProblem, FailsAPointWhoseSimulationFails) {
-  DesignProblemParts parts = small_parts("bdf1");
+TEST(Shooting, FailsAPointWhoseSimulationFails) {
+  TrajectoryProblem parts = small_parts("bdf1");
   SimulationOptions options = parts.simulator.options();
   options.newton.max_iter = 1;
   options.max_halvings = 0;
   parts.simulator = Simulator(parts.simulator.model(), parts.simulator.parameters(), options);
-  DesignProblem problem(std::move(parts));
+  Shooting problem(parts, {});
   EXPECT_THROW(static_cast<void>(problem.objective(problem.variables().start)),
                solvers::EvaluationError);
 }
 
-TEST(DesignProblem, ControlsAMechanismThatIsNotDesigned) {
-  DesignProblemParts parts = small_parts("bdf2");
+TEST(Shooting, ControlsAMechanismThatIsNotDesigned) {
+  TrajectoryProblem parts = small_parts("bdf2");
   const Model model = parts.simulator.model();
   parts.simulator = Simulator(model, ParameterSet(), parts.simulator.options());
   parts.map = std::make_shared<IdentityDesignMap>(ParameterSet());
   parts.constraints.erase(parts.constraints.begin() + 3);  // on parameters
   parts.controls.scale = Eigen::VectorXd::Constant(model.control_count(), 0.5);
-  DesignProblem problem(std::move(parts));
+  Shooting problem(parts, {});
   EXPECT_EQ(problem.variables().start.size(), 4 * model.control_count());
   const solvers::GradientCheck check = solvers::check_gradients(problem, problem.variables().start);
   EXPECT_LT(check.gap, 1e-6) << check.gap_name;
 }
 
-TEST(DesignProblem, RefusesPartsThatDoNotFit) {
+TEST(Shooting, RefusesPartsThatDoNotFit) {
   const auto expect_refused = [](const auto& spoil) {
-    DesignProblemParts parts = small_parts("bdf1");
+    TrajectoryProblem parts = small_parts("bdf1");
     spoil(parts);
-    EXPECT_THROW(DesignProblem(std::move(parts)), InvalidInput);
+    EXPECT_THROW(Shooting(parts, {}), InvalidInput);
   };
-  expect_refused([](DesignProblemParts& parts) { parts.map = nullptr; });
-  expect_refused([](DesignProblemParts& parts) { parts.controls.hold = 0; });
-  expect_refused([](DesignProblemParts& parts) { parts.controls.start.resize(1, 1); });
-  expect_refused([](DesignProblemParts& parts) { parts.controls.lower.resize(1); });
-  expect_refused([](DesignProblemParts& parts) { parts.q0.resize(1); });
-  expect_refused([](DesignProblemParts& parts) { parts.design_weight = -1.0; });
-  expect_refused([](DesignProblemParts& parts) {
+  expect_refused([](TrajectoryProblem& parts) { parts.map = nullptr; });
+  expect_refused([](TrajectoryProblem& parts) { parts.controls.hold = 0; });
+  expect_refused([](TrajectoryProblem& parts) { parts.controls.start.resize(1, 1); });
+  expect_refused([](TrajectoryProblem& parts) { parts.controls.lower.resize(1); });
+  expect_refused([](TrajectoryProblem& parts) { parts.q0.resize(1); });
+  expect_refused([](TrajectoryProblem& parts) { parts.design_weight = -1.0; });
+  expect_refused([](TrajectoryProblem& parts) {
     parts.constraints.push_back(
         coordinate_limits(parts.simulator.model(), 0, {15}, -kInfinity, kInfinity));
   });
