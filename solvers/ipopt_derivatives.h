@@ -9,8 +9,8 @@ namespace hbar::solvers {
 /// What Ipopt's own derivative checker found.
 struct IpoptDerivativeTest {
   int errors = 0;    ///< derivatives that differ from differences by more than the tolerance
-  std::string text;  ///< Ipopt's report, a line for each; its indices count from 1 in grad_f, and
-                     ///< its numbers are in units of the scales
+  std::string text;  ///< Ipopt's report, a line for each error: indices count from 0, numbers are
+                     ///< in units of the scales
   [[nodiscard]] bool passed() const { return errors == 0; }
 };
 
