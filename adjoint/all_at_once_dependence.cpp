@@ -36,7 +36,7 @@ std::vector<Eigen::Index> AllAtOnce::columns_of(const ValuePlace& place) const {
     out.push_back(i);
   }
   if (place.field == ValueField::kMeasured) {
-    const int block = head_.block_of_step(std::max(0, place.step - 1));
+    const int block = head_.block_of_step(measured_step(place.step));
     for (Eigen::Index i = 0; i < head_.control_count(); ++i) {
       out.push_back(head_.control_place(block) + i);
     }
@@ -72,10 +72,12 @@ void AllAtOnce::differentiate_output(const ValuePlace& place) {
   by_qdot_.setZero(trajectory_.q.rows());
   by_u_.setZero(head_.control_count());
   by_p_.setZero(trajectory_.inputs.p.size());
-  outputs_.set_instant(mechanism_, trajectory_.q.col(stage), trajectory_.qdot.col(stage));
+  const auto q = trajectory_.q.col(stage);
+  const auto qdot = trajectory_.qdot.col(stage);
   outputs_.pull_back(mechanism_, problem_.simulator.parameters(), trajectory_.inputs.p,
-                     trajectory_.inputs.u.col(std::max(0, place.step - 1)), y, by_q_, by_qdot_,
-                     by_u_, by_p_);
+                     outputs_.motion_at(mechanism_, q, qdot), q, qdot,
+                     trajectory_.inputs.u.col(measured_step(place.step)), y, by_q_, by_qdot_, by_u_,
+                     by_p_);
 }
 
 void AllAtOnce::derivatives_of(const ValuePlace& place, std::vector<double>& out) {

@@ -47,7 +47,8 @@ void AllAtOnce::add_stage(int stage, EntryPlan& entries) const {
   const int n = problem_.simulator.model().dof();
   const int step = step_ended_by(stage);
   const bool reads_controls = step >= 0 && problem_.simulator.measured_count() > 0;
-  const Eigen::Index control = head_.control_place(head_.block_of_step(step > 0 ? step - 1 : 0));
+  const Eigen::Index control =
+      head_.control_place(head_.block_of_step(measured_step(step > 0 ? step : 0)));
   for_each_pair(runs, [&](const StageEntry& a, const StageEntry& b) {
     for (int c = 0; c < n; ++c) {
       for (const int other : pairs_[static_cast<std::size_t>(c)]) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "hbar/core/error.h"
-#include "hbar/core/measurements.h"
+#include "hbar/core/instant_outputs.h"
 #include "hbar/core/parameter_derivatives.h"
 
 namespace hbar {
@@ -22,9 +22,8 @@ struct AdjointSweep::Workspace {
         history(s.model()),
         stage(s.model()),
         point(s.model()),
-        end_effectors(s.model()),
-        tactile(s.model()),
-        measurements(s.model(), s.options().measurements),
+        outputs(s.model(), s.options().measurements),
+        rows(outputs.zero_rows()),
         y_start{Eigen::VectorXd(s.model().dof()), Eigen::VectorXd(s.model().dof())},
         block(s.model().dof(), s.model().dof()),
         lu(s.model().dof()) {}
@@ -39,9 +38,8 @@ struct AdjointSweep::Workspace {
   History history;
   StageResidual<double> stage;
   StagePoint<double> point;
-  EndEffectors<double> end_effectors;
-  TactileReadings<double> tactile;
-  Measurements<double> measurements;
+  InstantOutputs<double> outputs;
+  OutputRows<double> rows;
   Eigen::MatrixXd q_bar;     // ∂L/∂q per stage, so far
   Eigen::MatrixXd qdot_bar;  // ∂L/∂q̇ per stage, so far
   Eigen::VectorXd g, y, z, residual, correction, y_qdot, y_a;
@@ -58,23 +56,17 @@ struct AdjointSweep::Workspace {
 void AdjointSweep::Workspace::add_variables(const Trajectory& trajectory,
                                             const TrajectoryPartials& partials, int k,
                                             Gradient& out) {
+  if (outputs.empty()) {
+    return;
+  }
   const int s = trajectory.timeline.step_end(k);
-  const ParameterSet& set = simulator.parameters();
-  if (partials.v.rows() > 0 && !partials.v.col(k).isZero(0.0)) {
-    end_effectors.pull_back(mechanism, set, trajectory.inputs.p, stage.motion(), partials.v.col(k),
-                            q_bar.col(s), out.p);
-  }
-  if (partials.tactile.rows() > 0 && !partials.tactile.col(k).isZero(0.0)) {
-    tactile.pull_back(mechanism, set, trajectory.inputs.p, stage.motion(), partials.tactile.col(k),
-                      q_bar.col(s), qdot_bar.col(s), out.p);
-  }
-  if (partials.measured.rows() > 0 && !partials.measured.col(k).isZero(0.0)) {
-    const int step = measured_step(k);
-    measurements.pull_back(mechanism, set, trajectory.inputs.p, stage.motion(), trajectory.q.col(s),
-                           trajectory.qdot.col(s), trajectory.inputs.u.col(step),
-                           partials.measured.col(k), q_bar.col(s), qdot_bar.col(s), out.u.col(step),
-                           out.p);
-  }
+  const int step = measured_step(k);
+  rows.v = partials.v.col(k);
+  rows.tactile = partials.tactile.col(k);
+  rows.measured = partials.measured.col(k);
+  outputs.pull_back(mechanism, simulator.parameters(), trajectory.inputs.p, stage.motion(),
+                    trajectory.q.col(s), trajectory.qdot.col(s), trajectory.inputs.u.col(step),
+                    rows, q_bar.col(s), qdot_bar.col(s), out.u.col(step), out.p);
 }
 
 /// z = H_ss⁻ᵀ y, refined against the exact block through its transposed product.

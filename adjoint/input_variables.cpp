@@ -89,7 +89,9 @@ void InputVariables::describe_design_and_controls() {
     start = held.start.cols() == blocks_ ? held.start : held.start.replicate(1, blocks_);
   }
   const auto repeated = [&](const Eigen::VectorXd& vector, double value, const char* name) {
-    return filled(vector, control_count_, value, name).replicate(blocks_, 1).eval();
+    return vector.size() == start.size()
+               ? vector
+               : filled(vector, control_count_, value, name).replicate(blocks_, 1).eval();
   };
   append(variables_, start.reshaped(), repeated(held.lower, -kUnbounded, "controls.lower"),
          repeated(held.upper, kUnbounded, "controls.upper"),

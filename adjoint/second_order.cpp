@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hbar/core/error.h"
+#include "hbar/core/instant_outputs.h"
 #include "hbar/core/parameter_derivatives.h"
 
 namespace hbar {
@@ -70,11 +71,9 @@ struct SecondOrderSweep::Workspace {
         mechanism_d(nominal_mechanism<Dual>(s.model())),
         stage_d(s.model()),
         point_d(s.model()),
-        motion_d(s.model().tree()),
-        end_effectors(s.model()),
-        tactile(s.model()),
+        outputs(s.model(), s.options().measurements),
+        rows(outputs.zero_rows()),
         g_d(s.model().dof()),
-        zeros_d(VectorX<Dual>::Zero(s.model().dof())),
         qdot_past(s.model().dof()),
         a_past(s.model().dof()),
         y_start{VectorX<Dual>(s.model().dof()), VectorX<Dual>(s.model().dof())},
@@ -84,12 +83,9 @@ struct SecondOrderSweep::Workspace {
   void factorize();
   void set_stage(int s);
   void read_values(int k);
-  void add_outputs(int k, MatrixX<Dual>& q_bar, MatrixX<Dual>& qdot_bar, VectorX<Dual>& p_bar);
+  void add_outputs(int k);
   void solve_adjoint(int s);
   void sweep_stage(int s);
-  [[nodiscard]] bool has_outputs() const {
-    return simulator.model().variable_count() + simulator.model().tactile_count() > 0;
-  }
 
   Simulator& simulator;
   AdjointSweep adjoint;
@@ -107,16 +103,15 @@ struct SecondOrderSweep::Workspace {
   Mechanism<Dual> mechanism_d;
   StageResidual<Dual> stage_d;
   StagePoint<Dual> point_d;
-  Motion<Dual> motion_d;
-  EndEffectors<Dual> end_effectors;
-  TactileReadings<Dual> tactile;
+  InstantOutputs<Dual> outputs;
+  OutputRows<Dual> rows;
   VectorX<Dual> p_d;
   MatrixX<Dual> u_d, q_d, qdot_d;  // per step; per stage
-  VectorX<Dual> g_d, zeros_d, qdot_past, a_past, y, z, y_qdot, y_a, reading;
+  VectorX<Dual> g_d, qdot_past, a_past, y, z, y_qdot, y_a;
   StepStart<Dual> y_start;
   Eigen::VectorXd delta;
   ValueTangent tangent;
-  MatrixX<Dual> v_weights, tactile_weights, q_bar, qdot_bar, u_bar;
+  MatrixX<Dual> v_weights, tactile_weights, measured_weights, q_bar, qdot_bar, u_bar;
   VectorX<Dual> p_bar;
   Gradient out;
 };
@@ -150,31 +145,28 @@ void SecondOrderSweep::Workspace::read_values(int k) {
   const int s = trajectory().timeline.step_end(k);
   set_slopes(q_d.col(s), tangent.q.col(k));
   set_slopes(qdot_d.col(s), tangent.qdot.col(k));
-  if (!has_outputs()) {
+  if (outputs.empty()) {
     return;
   }
-  compute_motion<Dual>(simulator.model().tree(), mechanism_d, q_d.col(s), qdot_d.col(s), zeros_d,
-                       motion_d);
-  reading.resize(tangent.v.rows());
-  end_effectors.positions(motion_d, reading);
-  set_slopes(reading, tangent.v.col(k));
-  reading.resize(tangent.tactile.rows());
-  tactile.readings(mechanism_d, motion_d, reading);
-  set_slopes(reading, tangent.tactile.col(k));
+  outputs.read(mechanism_d, outputs.motion_at(mechanism_d, q_d.col(s), qdot_d.col(s)), q_d.col(s),
+               qdot_d.col(s), u_d.col(measured_step(k)), rows);
+  set_slopes(rows.v, tangent.v.col(k));
+  set_slopes(rows.tactile, tangent.tactile.col(k));
+  set_slopes(rows.measured, tangent.measured.col(k));
 }
 
-void SecondOrderSweep::Workspace::add_outputs(int k, MatrixX<Dual>& by_q, MatrixX<Dual>& by_qdot,
-                                              VectorX<Dual>& by_p) {
-  if (!has_outputs()) {
+/// Brings the outputs' weights at step k to what they depend on.
+void SecondOrderSweep::Workspace::add_outputs(int k) {
+  if (outputs.empty()) {
     return;
   }
   const int s = trajectory().timeline.step_end(k);
-  const ParameterSet& set = simulator.parameters();
-  compute_motion<Dual>(simulator.model().tree(), mechanism_d, q_d.col(s), qdot_d.col(s), zeros_d,
-                       motion_d);
-  end_effectors.pull_back(mechanism_d, set, p_d, motion_d, v_weights.col(k), by_q.col(s), by_p);
-  tactile.pull_back(mechanism_d, set, p_d, motion_d, tactile_weights.col(k), by_q.col(s),
-                    by_qdot.col(s), by_p);
+  const int step = measured_step(k);
+  rows = {v_weights.col(k), tactile_weights.col(k), measured_weights.col(k)};
+  outputs.pull_back(mechanism_d, simulator.parameters(), p_d,
+                    outputs.motion_at(mechanism_d, q_d.col(s), qdot_d.col(s)), q_d.col(s),
+                    qdot_d.col(s), u_d.col(step), rows, q_bar.col(s), qdot_bar.col(s),
+                    u_bar.col(step), p_bar);
 }
 
 /// δz of H_ssᵀ δz = δy − (δH_ss)ᵀ z.
@@ -265,7 +257,7 @@ const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
   w.tangent.qdot.resize(model.dof(), steps + 1);
   w.tangent.v.resize(model.variable_count(), steps + 1);
   w.tangent.tactile.resize(model.tactile_count(), steps + 1);
-  w.tangent.measured.resize(0, steps + 1);
+  w.tangent.measured.resize(w.simulator.measured_count(), steps + 1);
   w.tangent.u = direction.u;
   w.tangent.p = direction.p;
   for (int k = 0; k <= steps; ++k) {
@@ -290,17 +282,18 @@ const Gradient& SecondOrderSweep::product(const TrajectoryPartials* weights_tang
   }
   set_dual(y.v, dy.v, w.v_weights);
   set_dual(y.tactile, dy.tactile, w.tactile_weights);
+  set_dual(y.measured, dy.measured, w.measured_weights);
   set_dual(y.u, dy.u, w.u_bar);
   w.p_bar = dual_vector(y.p, dy.p);
   int k = timeline.step_count();
   for (int s = timeline.last_stage(); s > 0; --s) {
     if (s == timeline.step_end(k)) {
-      w.add_outputs(k, w.q_bar, w.qdot_bar, w.p_bar);
+      w.add_outputs(k);
       --k;
     }
     w.sweep_stage(s);
   }
-  w.add_outputs(0, w.q_bar, w.qdot_bar, w.p_bar);
+  w.add_outputs(0);
   const auto slope = [](const Dual& d) { return d.slope; };
   w.out.p = w.p_bar.unaryExpr(slope);
   w.out.u = w.u_bar.unaryExpr(slope);

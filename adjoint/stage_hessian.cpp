@@ -72,9 +72,9 @@ void StageHessian::linearize_stage(const Mechanism<Dual>& mechanism) {
 /// Adds the outputs' gradients to by_q_, by_qdot_, by_u_ and by_p_.
 void StageHessian::linearize_outputs(const Mechanism<Dual>& mechanism, const VectorX<Dual>& p) {
   if (has_outputs_) {
-    outputs_.set_instant(mechanism, point_.q, point_.qdot);
-    outputs_.pull_back(mechanism, simulator_.parameters(), p, point_.u, y_, by_q_, by_qdot_, by_u_,
-                       by_p_);
+    outputs_.pull_back(mechanism, simulator_.parameters(), p,
+                       outputs_.motion_at(mechanism, point_.q, point_.qdot), point_.q, point_.qdot,
+                       point_.u, y_, by_q_, by_qdot_, by_u_, by_p_);
   }
 }
 

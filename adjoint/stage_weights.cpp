@@ -1,7 +1,7 @@
 #include "hbar/adjoint/stage_weights.h"
 
 #include "hbar/adjoint/flat_stencil.h"
-#include "hbar/core/measurements.h"
+#include "hbar/core/instant_outputs.h"
 
 namespace hbar {
 
@@ -27,32 +27,25 @@ void add_rate_weights(const Model& model, const Trajectory& trajectory, int s,
 StageWeights stage_weights(Simulator& simulator, const Trajectory& trajectory,
                            const TrajectoryPartials& partials) {
   const Model& model = simulator.model();
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(model.dof());
-  StageWeights out{Eigen::MatrixXd::Zero(model.dof(), trajectory.timeline.stage_count()), none,
-                   partials.p, partials.u};
+  StageWeights out{Eigen::MatrixXd::Zero(model.dof(), trajectory.timeline.stage_count()),
+                   Eigen::VectorXd::Zero(model.dof()), partials.p, partials.u};
   Mechanism<double> mechanism = nominal_mechanism<double>(model);
   apply_parameters<double>(model, simulator.parameters(), trajectory.inputs.p, mechanism);
-  Motion<double> motion(model.tree());
-  EndEffectors<double> end_effectors(model);
-  TactileReadings<double> tactile(model);
-  Measurements<double> measurements(model, simulator.options().measurements);
+  InstantOutputs<double> outputs(model, simulator.options().measurements);
   Eigen::VectorXd by_rate(model.dof());
   for (int k = 0; k <= trajectory.step_count(); ++k) {
     const int s = trajectory.timeline.step_end(k);
     out.q_bar.col(s) += partials.q.col(k);
     by_rate = partials.qdot.col(k);
-    if (model.variable_count() + model.tactile_count() + measurements.size() > 0) {
-      compute_motion<double>(model.tree(), mechanism, trajectory.q.col(s), trajectory.qdot.col(s),
-                             none, motion);
-      end_effectors.pull_back(mechanism, simulator.parameters(), trajectory.inputs.p, motion,
-                              partials.v.col(k), out.q_bar.col(s), out.p);
-      tactile.pull_back(mechanism, simulator.parameters(), trajectory.inputs.p, motion,
-                        partials.tactile.col(k), out.q_bar.col(s), by_rate, out.p);
+    if (!outputs.empty()) {
+      const auto q = trajectory.q.col(s);
+      const auto qdot = trajectory.qdot.col(s);
       const int step = measured_step(k);
-      measurements.pull_back(mechanism, simulator.parameters(), trajectory.inputs.p, motion,
-                             trajectory.q.col(s), trajectory.qdot.col(s),
-                             trajectory.inputs.u.col(step), partials.measured.col(k),
-                             out.q_bar.col(s), by_rate, out.u.col(step), out.p);
+      outputs.pull_back(mechanism, simulator.parameters(), trajectory.inputs.p,
+                        outputs.motion_at(mechanism, q, qdot), q, qdot,
+                        trajectory.inputs.u.col(step),
+                        {partials.v.col(k), partials.tactile.col(k), partials.measured.col(k)},
+                        out.q_bar.col(s), by_rate, out.u.col(step), out.p);
     }
     add_rate_weights(model, trajectory, s, by_rate, out);
   }

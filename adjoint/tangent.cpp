@@ -2,95 +2,46 @@
 
 #include <utility>
 
-#include "hbar/core/measurements.h"
+#include "hbar/core/instant_outputs.h"
 
 namespace hbar {
 namespace {
 
-/// Adds ∂v/∂p δp at one step to its rows.
-class VariableTangent {
+/// Derivatives of outputs along directions: row by row in reverse where there are more directions
+/// than rows, direction by direction by dual numbers where there are more rows.
+class OutputTangent {
  public:
-  explicit VariableTangent(Simulator& simulator)
-      : simulator_(simulator),
-        mechanism_(nominal_mechanism<double>(simulator.model())),
-        motion_(simulator.model().tree()),
-        end_effectors_(simulator.model()) {}
-
-  /// δv = ∂v/∂q δq + ∂v/∂p δp at coordinates q.
-  Eigen::MatrixXd at(const Inputs& inputs, const Eigen::VectorXd& q, const Eigen::MatrixXd& dq,
-                     const Eigen::MatrixXd& dp) {
-    const Model& model = simulator_.model();
-    const int n = model.dof();
-    const int variables = model.variable_count();
-    const Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
-    compute_motion<double>(model.tree(), mechanism_, q, none, none, motion_);
-    Eigen::MatrixXd dv_dq(variables, n);
-    end_effectors_.jacobian(motion_, dv_dq);
-    Eigen::MatrixXd out = dv_dq * dq;
-    if (dp.rows() > 0) {
-      Eigen::VectorXd by_q(n);
-      Eigen::VectorXd row(dp.rows());
-      for (int i = 0; i < variables; ++i) {
-        by_q.setZero();
-        row.setZero();
-        end_effectors_.pull_back(mechanism_, simulator_.parameters(), inputs.p, motion_,
-                                 Eigen::VectorXd::Unit(variables, i), by_q, row);
-        out.row(i) += row.transpose() * dp;
-      }
-    }
-    return out;
-  }
-
-  void set_parameters(const Eigen::VectorXd& p) {
-    apply_parameters<double>(simulator_.model(), simulator_.parameters(), p, mechanism_);
-  }
-
- private:
-  Simulator& simulator_;
-  Mechanism<double> mechanism_;
-  Motion<double> motion_;
-  EndEffectors<double> end_effectors_;
-};
-
-/// Derivatives of sensor readings and measurements along one direction at a time, by dual numbers.
-class ReadingTangent {
- public:
-  /// @param dp  no column where nothing is to be read
-  ReadingTangent(Simulator& simulator, const Inputs& inputs, const Eigen::MatrixXd& dp)
-      : model_(simulator.model()),
+  OutputTangent(Simulator& simulator, const Inputs& inputs, const Directions& directions)
+      : set_(simulator.parameters()),
         inputs_(inputs),
-        motion_(model_.tree()),
-        tactile_(model_),
-        measurements_(model_, simulator.options().measurements),
-        none_(VectorX<Dual>::Zero(model_.dof())),
-        touched_(VectorX<Dual>::Zero(model_.tactile_count())),
-        measured_(VectorX<Dual>::Zero(measurements_.size())) {
-    for (Eigen::Index i = 0; i < dp.cols(); ++i) {
-      mechanisms_.push_back(nominal_mechanism<Dual>(model_));
-      apply_parameters<Dual>(model_, simulator.parameters(), dual(inputs.p, dp.col(i)),
+        directions_(directions),
+        outputs_(simulator.model(), simulator.options().measurements),
+        dual_outputs_(simulator.model(), simulator.options().measurements),
+        mechanism_(nominal_mechanism<double>(simulator.model())),
+        weights_(outputs_.zero_rows()),
+        rows_(dual_outputs_.zero_rows()) {
+    apply_parameters<double>(simulator.model(), set_, inputs.p, mechanism_);
+    const Eigen::Index count =
+        weights_.v.size() + weights_.tactile.size() + weights_.measured.size();
+    reverse_ = count < directions.count();
+    for (Eigen::Index i = 0; i < (reverse_ || count == 0 ? 0 : directions.count()); ++i) {
+      mechanisms_.push_back(nominal_mechanism<Dual>(simulator.model()));
+      apply_parameters<Dual>(simulator.model(), set_, dual(inputs.p, directions.p.col(i)),
                              mechanisms_.back());
     }
   }
 
   /// Rows of step k, which ends with coordinates q and rates q̇, in `out`.
   void at(int k, const Eigen::VectorXd& q, const Eigen::VectorXd& qdot, const Eigen::MatrixXd& dq,
-          const Eigen::MatrixXd& dqdot, const Eigen::MatrixXd& du, Tangents& out) {
-    const int step = measured_step(k);
-    const auto slope = [](const Dual& reading) { return reading.slope; };
-    for (std::size_t i = 0; i < mechanisms_.size(); ++i) {
-      const auto column = static_cast<Eigen::Index>(i);
-      const VectorX<Dual> q_i = dual(q, dq.col(column));
-      const VectorX<Dual> qdot_i = dual(qdot, dqdot.col(column));
-      const VectorX<Dual> u_i = dual(
-          inputs_.u.col(step), du.col(column).segment(step * inputs_.u.rows(), inputs_.u.rows()));
-      compute_motion<Dual>(model_.tree(), mechanisms_[i], q_i, qdot_i, none_, motion_);
-      tactile_.readings(mechanisms_[i], motion_, touched_);
-      measurements_.readings(mechanisms_[i], motion_, q_i, qdot_i, u_i, measured_);
-      out.tactile.col(column).segment(k * touched_.size(), touched_.size()) =
-          touched_.unaryExpr(slope);
-      out.measured.col(column).segment(k * measured_.size(), measured_.size()) =
-          measured_.unaryExpr(slope);
+          const Eigen::MatrixXd& dqdot, Tangents& out) {
+    if (!reverse_) {
+      by_direction(k, q, qdot, dq, dqdot, out);
+      return;
     }
+    const Motion<double>& motion = outputs_.motion_at(mechanism_, q, qdot);
+    by_row(k, motion, q, qdot, dq, dqdot, weights_.v, out.v);
+    by_row(k, motion, q, qdot, dq, dqdot, weights_.tactile, out.tactile);
+    by_row(k, motion, q, qdot, dq, dqdot, weights_.measured, out.measured);
   }
 
  private:
@@ -101,16 +52,65 @@ class ReadingTangent {
     }
     return out;
   }
+  static void set(const VectorX<Dual>& rows, int k, Eigen::Ref<Eigen::VectorXd> out) {
+    out.segment(k * rows.size(), rows.size()) =
+        rows.unaryExpr([](const Dual& row) { return row.slope; });
+  }
 
-  const Model& model_;
+  void by_direction(int k, const Eigen::VectorXd& q, const Eigen::VectorXd& qdot,
+                    const Eigen::MatrixXd& dq, const Eigen::MatrixXd& dqdot, Tangents& out) {
+    const Eigen::Index controls = inputs_.u.rows();
+    const int step = measured_step(k);
+    for (std::size_t i = 0; i < mechanisms_.size(); ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      const VectorX<Dual> q_i = dual(q, dq.col(column));
+      const VectorX<Dual> qdot_i = dual(qdot, dqdot.col(column));
+      const VectorX<Dual> u_i =
+          dual(inputs_.u.col(step), directions_.u.col(column).segment(step * controls, controls));
+      dual_outputs_.read(mechanisms_[i], dual_outputs_.motion_at(mechanisms_[i], q_i, qdot_i), q_i,
+                         qdot_i, u_i, rows_);
+      set(rows_.v, k, out.v.col(column));
+      set(rows_.tactile, k, out.tactile.col(column));
+      set(rows_.measured, k, out.measured.col(column));
+    }
+  }
+
+  /// @param weights  the member of weights_ whose rows are wanted
+  void by_row(int k, const Motion<double>& motion, const Eigen::VectorXd& q,
+              const Eigen::VectorXd& qdot, const Eigen::MatrixXd& dq, const Eigen::MatrixXd& dqdot,
+              Eigen::VectorXd& weights, Eigen::MatrixXd& out) {
+    const Eigen::Index controls = inputs_.u.rows();
+    const int step = measured_step(k);
+    for (Eigen::Index row = 0; row < weights.size(); ++row) {
+      by_q_.setZero(q.size());
+      by_qdot_.setZero(q.size());
+      by_u_.setZero(controls);
+      by_p_.setZero(inputs_.p.size());
+      weights[row] = 1.0;
+      outputs_.pull_back(mechanism_, set_, inputs_.p, motion, q, qdot, inputs_.u.col(step),
+                         weights_, by_q_, by_qdot_, by_u_, by_p_);
+      weights[row] = 0.0;
+      auto to = out.row(k * weights.size() + row);
+      to.noalias() = by_q_.transpose() * dq;
+      to.noalias() += by_qdot_.transpose() * dqdot;
+      to.noalias() += by_p_.transpose() * directions_.p;
+      if (!by_u_.isZero(0.0)) {
+        to.noalias() += by_u_.transpose() * directions_.u.middleRows(step * controls, controls);
+      }
+    }
+  }
+
+  const ParameterSet& set_;
   const Inputs& inputs_;
-  std::vector<Mechanism<Dual>> mechanisms_;  // per direction
-  Motion<Dual> motion_;
-  TactileReadings<Dual> tactile_;
-  Measurements<Dual> measurements_;
-  VectorX<Dual> none_;
-  VectorX<Dual> touched_;
-  VectorX<Dual> measured_;
+  const Directions& directions_;
+  bool reverse_ = true;
+  InstantOutputs<double> outputs_;
+  InstantOutputs<Dual> dual_outputs_;
+  Mechanism<double> mechanism_;
+  std::vector<Mechanism<Dual>> mechanisms_;  // per direction, if not in reverse
+  OutputRows<double> weights_;               // all zero but for the row in hand
+  OutputRows<Dual> rows_;
+  Eigen::VectorXd by_q_, by_qdot_, by_u_, by_p_;
 };
 
 /// δq̇ of a stage from δq of the stages it looks back on.
@@ -165,25 +165,15 @@ Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directio
   out.q.resize((steps + 1) * n, directions.count());
   out.qdot.resize((steps + 1) * n, directions.count());
   out.v.resize((steps + 1) * model.variable_count(), directions.count());
-  const int measured = simulator_.measured_count();
-  const bool reads = model.tactile_count() + measured > 0;
   out.tactile.resize((steps + 1) * model.tactile_count(), directions.count());
-  out.measured.resize((steps + 1) * measured, directions.count());
-  ReadingTangent readings(simulator_, trajectory.inputs, reads ? directions.p : Eigen::MatrixXd());
-  VariableTangent variables(simulator_);
-  variables.set_parameters(trajectory.inputs.p);
+  out.measured.resize((steps + 1) * simulator_.measured_count(), directions.count());
+  OutputTangent outputs(simulator_, trajectory.inputs, directions);
   for (int k = 0; k <= steps; ++k) {
     const int s = trajectory.timeline.step_end(k);
     out.q.middleRows(k * n, n) = dq.middleRows(s * n, n);
     out.qdot.middleRows(k * n, n) = rate_tangent(model, trajectory, s, dq, directions.qdot0);
-    if (model.variable_count() > 0) {
-      out.v.middleRows(k * model.variable_count(), model.variable_count()) = variables.at(
-          trajectory.inputs, trajectory.q.col(s), dq.middleRows(s * n, n), directions.p);
-    }
-    if (reads) {
-      readings.at(k, trajectory.q.col(s), trajectory.qdot.col(s), dq.middleRows(s * n, n),
-                  out.qdot.middleRows(k * n, n), directions.u, out);
-    }
+    outputs.at(k, trajectory.q.col(s), trajectory.qdot.col(s), dq.middleRows(s * n, n),
+               out.qdot.middleRows(k * n, n), out);
   }
   return out;
 }

@@ -14,8 +14,9 @@ namespace hbar {
 struct HeldControls {
   int hold = 1;           ///< steps per block, > 0; the last block may be shorter
   Eigen::MatrixXd start;  ///< empty: zeros                               [controls x blocks or 1]
-  Eigen::VectorXd lower;  ///< empty: none                                           [controls]
-  Eigen::VectorXd upper;  ///< empty: none                                           [controls]
+  Eigen::VectorXd lower;  ///< empty: none; of all blocks, or block by block
+                          ///<                                    [controls or controls·blocks]
+  Eigen::VectorXd upper;  ///< the same; where lower = upper a control is given, not looked for
   Eigen::VectorXd scale;  ///< typical size of a change; empty: ones                 [controls]
 };
 

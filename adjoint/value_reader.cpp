@@ -6,9 +6,8 @@ ValueReader::ValueReader(const Model& model, const std::vector<Measurement>& mea
     : model_(model),
       mechanism_(nominal_mechanism<double>(model)),
       motion_(model.tree()),
-      end_effectors_(model),
-      tactile_(model),
-      measurements_(model, measurements),
+      outputs_(model, measurements),
+      rows_(outputs_.zero_rows()),
       contacts_(model),
       none_(Eigen::VectorXd::Zero(model.dof())) {}
 
@@ -21,20 +20,20 @@ TrajectoryValues ValueReader::values(const ParameterSet& set, const Trajectory& 
   out.qdot.resize(model_.dof(), steps + 1);
   out.v.resize(model_.variable_count(), steps + 1);
   out.tactile.resize(model_.tactile_count(), steps + 1);
-  out.measured.resize(measurements_.size(), steps + 1);
+  out.measured.resize(rows_.measured.size(), steps + 1);
   out.u = trajectory.inputs.u.leftCols(steps);
   out.p = trajectory.inputs.p;
   apply_parameters<double>(model_, set, trajectory.inputs.p, mechanism_);
   for (int k = 0; k <= steps; ++k) {
     out.q.col(k) = trajectory.q_at_step(k);
     out.qdot.col(k) = trajectory.qdot_at_step(k);
-    if (model_.variable_count() + model_.tactile_count() + measurements_.size() > 0) {
-      compute_motion<double>(model_.tree(), mechanism_, out.q.col(k), out.qdot.col(k), none_,
-                             motion_);
-      end_effectors_.positions(motion_, out.v.col(k));
-      tactile_.readings(mechanism_, motion_, out.tactile.col(k));
-      measurements_.readings(mechanism_, motion_, out.q.col(k), out.qdot.col(k),
-                             trajectory.inputs.u.col(measured_step(k)), out.measured.col(k));
+    if (!outputs_.empty()) {
+      outputs_.read(mechanism_, outputs_.motion_at(mechanism_, out.q.col(k), out.qdot.col(k)),
+                    out.q.col(k), out.qdot.col(k), trajectory.inputs.u.col(measured_step(k)),
+                    rows_);
+      out.v.col(k) = rows_.v;
+      out.tactile.col(k) = rows_.tactile;
+      out.measured.col(k) = rows_.measured;
     }
   }
   return out;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "hbar/adjoint/simulator.h"
-#include "hbar/core/measurements.h"
+#include "hbar/core/instant_outputs.h"
 
 namespace hbar {
 
@@ -27,16 +27,15 @@ class ValueReader {
 
   /// Names of the measured rows.
   [[nodiscard]] const std::vector<std::string>& measured_names() const {
-    return measurements_.names();
+    return outputs_.measured_names();
   }
 
  private:
   const Model& model_;
   Mechanism<double> mechanism_;
   Motion<double> motion_;
-  EndEffectors<double> end_effectors_;
-  TactileReadings<double> tactile_;
-  Measurements<double> measurements_;
+  InstantOutputs<double> outputs_;
+  OutputRows<double> rows_;
   ContactForces<double> contacts_;
   Eigen::VectorXd none_;  // accelerations, which nothing here reads
 };

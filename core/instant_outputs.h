@@ -26,26 +26,34 @@ class InstantOutputs {
 
   /// Whether there is nothing to read.
   [[nodiscard]] bool empty() const;
+  /// Names of the measured rows.
+  [[nodiscard]] const std::vector<std::string>& measured_names() const {
+    return measurements_.names();
+  }
   /// Rows of the right sizes, all zero.
   [[nodiscard]] OutputRows<S> zero_rows() const;
 
-  /// Takes an instant.
+  /// Poses and twists at an instant, for the two below; valid until the next call.
   ///
   /// @param q, qdot  coordinates and rates                                           [dof]
-  void set_instant(const Mechanism<S>& mechanism, const VectorView<S>& q,
-                   const VectorView<S>& qdot);
+  const Motion<S>& motion_at(const Mechanism<S>& mechanism, const VectorView<S>& q,
+                             const VectorView<S>& qdot);
 
-  /// The rows at the instant that was set.
+  /// The rows at an instant.
   ///
-  /// @param u  controls                                                         [controls]
-  void read(const Mechanism<S>& mechanism, const VectorView<S>& u, OutputRows<S>& out);
+  /// @param motion   poses and twists at (q, q̇)
+  /// @param q, qdot  coordinates and rates                                           [dof]
+  /// @param u        controls                                                   [controls]
+  void read(const Mechanism<S>& mechanism, const Motion<S>& motion, const VectorView<S>& q,
+            const VectorView<S>& qdot, const VectorView<S>& u, OutputRows<S>& out);
 
-  /// Transposed derivative at the instant that was set: weights y are added as gradients.
+  /// Transposed derivative: weights y are added as gradients.
   ///
   /// @param p, by_p            values of, and gradient by, the set's parameters  [set.size()]
   /// @param by_q, by_qdot      gradients by coordinates and rates                [dof]
   /// @param by_u               gradient by the controls                          [controls]
   void pull_back(const Mechanism<S>& mechanism, const ParameterSet& set, const VectorView<S>& p,
+                 const Motion<S>& motion, const VectorView<S>& q, const VectorView<S>& qdot,
                  const VectorView<S>& u, const OutputRows<S>& y, Eigen::Ref<VectorX<S>> by_q,
                  Eigen::Ref<VectorX<S>> by_qdot, Eigen::Ref<VectorX<S>> by_u,
                  Eigen::Ref<VectorX<S>> by_p);
@@ -56,8 +64,6 @@ class InstantOutputs {
   EndEffectors<S> end_effectors_;
   TactileReadings<S> tactile_;
   Measurements<S> measurements_;
-  VectorX<S> q_;
-  VectorX<S> qdot_;
   VectorX<S> none_;  // accelerations, which nothing here reads
 };
 

@@ -93,7 +93,7 @@ TEST_P(SecondOrderOf, TheHessianIsSymmetric) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryProblem, SecondOrderOf, ::testing::ValuesIn(second_order_problems()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& c) { return c.param.name; });
 
 TEST(SecondOrder, OfConstantWeightsIsCurvatureAlone) {
   Problem problem = testing::small_problem("bdf1");
