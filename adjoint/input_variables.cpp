@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "hbar/adjoint/state_variables.h"
+#include "hbar/adjoint/value_access.h"
 #include "hbar/core/error.h"
 
 namespace hbar {
@@ -176,37 +177,15 @@ double InputVariables::design_cost_curvature(Eigen::Index i) const {
 }
 
 void InputVariables::require_places(const ConstraintTerm& term) const {
-  const Simulator& simulator = problem_.simulator;
-  const int steps = simulator.options().steps;
+  const TrajectoryValues shape = value_shape(problem_.simulator);
   for (const PartialPlace& place : term.places()) {
-    int size = simulator.model().dof();
-    int columns = steps + 1;
-    switch (place.field) {
-      case ValueField::kQ:
-      case ValueField::kQdot:
-        break;
-      case ValueField::kV:
-        size = simulator.model().variable_count();
-        break;
-      case ValueField::kTactile:
-        size = simulator.model().tactile_count();
-        break;
-      case ValueField::kMeasured:
-        size = simulator.measured_count();
-        break;
-      case ValueField::kU:
-        size = simulator.model().control_count();
-        columns = steps;
-        break;
-      case ValueField::kP:
-        size = simulator.parameters().size();
-        columns = std::numeric_limits<int>::max();
-        break;
-    }
-    if (place.index >= size || place.step >= columns) {
-      throw InvalidInput(concat(
-          "constraint '", term.rows().names[static_cast<std::size_t>(place.row)], "' reads number ",
-          place.index, " of ", size, " at step ", place.step, " of ", steps));
+    const bool timeless = place.field == ValueField::kP;
+    if (place.index >= field_rows(shape, place.field) ||
+        (!timeless && place.step >= field_columns(shape, place.field))) {
+      throw InvalidInput(
+          concat("constraint '", term.rows().names[static_cast<std::size_t>(place.row)], "' reads ",
+                 place_name(place.place()), "; there are ", field_rows(shape, place.field), " x ",
+                 field_columns(shape, place.field), " of ", field_name(place.field)));
     }
   }
 }

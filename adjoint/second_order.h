@@ -1,7 +1,7 @@
 #pragma once
 
 #include "hbar/adjoint/gradient.h"
-#include "hbar/adjoint/value_numbers.h"
+#include "hbar/adjoint/value_access.h"
 
 namespace hbar {
 

@@ -5,7 +5,7 @@
 
 #include "hbar/adjoint/all_at_once.h"
 #include "hbar/adjoint/shooting.h"
-#include "hbar/adjoint/value_numbers.h"
+#include "hbar/adjoint/value_access.h"
 #include "hbar/core/error.h"
 #include "hbar/core/nearest_name.h"
 
@@ -97,7 +97,7 @@ TrajectoryPartials Transcription::lagrangian_partials(const TrajectoryValues& va
     Eigen::VectorXd partials(static_cast<Eigen::Index>(places.size()));
     term->partials(values, partials);
     for (std::size_t i = 0; i < places.size(); ++i) {
-      number_at(out, places[i].place()) +=
+      partial_at(out, places[i].place()) +=
           lambda[first + places[i].row] * partials[static_cast<Eigen::Index>(i)];
     }
     first += term->rows().size();

@@ -1,6 +1,6 @@
 // What every transcription's Hessian begins with: the terms' second partials.
 #include "hbar/adjoint/transcription.h"
-#include "hbar/adjoint/value_numbers.h"
+#include "hbar/adjoint/value_access.h"
 #include "hbar/core/error.h"
 
 namespace hbar {

@@ -103,4 +103,32 @@ std::vector<ValuePlace> all_places(const TrajectoryValues& shape) {
   return out;
 }
 
+TrajectoryValues value_shape(const Simulator& simulator) {
+  const Model& model = simulator.model();
+  const int steps = simulator.options().steps;
+  TrajectoryValues out;
+  out.h = simulator.options().h;
+  out.q.setZero(model.dof(), steps + 1);
+  out.qdot.setZero(model.dof(), steps + 1);
+  out.v.setZero(model.variable_count(), steps + 1);
+  out.tactile.setZero(model.tactile_count(), steps + 1);
+  out.measured.setZero(simulator.measured_count(), steps + 1);
+  out.u.setZero(model.control_count(), steps);
+  out.p.setZero(simulator.parameters().size());
+  return out;
+}
+
+void add_second_order(const std::vector<SecondPlace>& places,
+                      const Eigen::Ref<const Eigen::VectorXd>& second, const ValueTangent& tangent,
+                      TrajectoryPartials& out) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const SecondPlace& at = places[i];
+    const double value = second[static_cast<Eigen::Index>(i)];
+    partial_at(out, at.a) += value * value_at(tangent, at.b);
+    if (!(at.a == at.b)) {
+      partial_at(out, at.b) += value * value_at(tangent, at.a);
+    }
+  }
+}
+
 }  // namespace hbar
