@@ -92,7 +92,7 @@ void InputVariables::describe_design_and_controls() {
   const auto repeated = [&](const Eigen::VectorXd& vector, double value, const char* name) {
     return vector.size() == start.size()
                ? vector
-               : filled(vector, control_count_, value, name).replicate(blocks_, 1).eval();
+               : Eigen::VectorXd(filled(vector, control_count_, value, name).replicate(blocks_, 1));
   };
   append(variables_, start.reshaped(), repeated(held.lower, -kUnbounded, "controls.lower"),
          repeated(held.upper, kUnbounded, "controls.upper"),
