@@ -13,7 +13,9 @@ namespace hbar::swing_up {
 struct TailStep {
   int iteration = 0;
   double step_norm = 0.0;  ///< ‖d‖∞ in Ipopt's scaled variables
-  double order = 0.0;      ///< log ‖d_k‖ / log ‖d_{k−1}‖, 2 if it converges quadratically
+  /// log(‖d_k‖ / ‖d_{k−1}‖) / log(‖d_{k−1}‖ / ‖d_{k−2}‖): 2 if it converges quadratically; 0 for
+  /// the first two.
+  double order = 0.0;
 };
 
 /// The last full steps of a run whose norm is below 1 and above rounding.
@@ -27,15 +29,15 @@ struct TailStep {
 [[nodiscard]] example::ExitCode compare_hessians(const SwingUp& swing_up,
                                                  const example::OptimiseArguments& arguments);
 
-/// Times of one iteration of Ipopt, all-at-once with the exact Hessian.
+/// CPU time of one iteration of Ipopt, all-at-once with the exact Hessian.
 struct IterationCost {
   int steps = 0;
-  double set_up = 0.0;     ///< until Ipopt starts, s
-  double total = 0.0;      ///< CPU time of an iteration, s; the rest are parts of it by the clock
-  double values = 0.0;     ///< residuals and what the terms read
-  double first = 0.0;      ///< gradient and Jacobian
-  double hessian = 0.0;    ///<
-  double optimiser = 0.0;  ///< Ipopt and its linear systems
+  double set_up = 0.0;     ///< of the program, once, s
+  double total = 0.0;      ///< of an iteration, s; what follows are its parts
+  double values = 0.0;     ///< objective, constraints and residuals, s
+  double first = 0.0;      ///< gradient and Jacobian, s
+  double hessian = 0.0;    ///< s
+  double optimiser = 0.0;  ///< Ipopt and its linear systems, s
 };
 
 /// Takes the fastest of several runs of a few iterations for each number of steps.

@@ -81,7 +81,7 @@ solvers::IpoptOptions ipopt_options() {
 
 solvers::IpoptOptions fixed_barrier_options(double mu) {
   solvers::IpoptOptions options = ipopt_options();
-  options.tolerance = 1e-10;
+  options.tolerance = 1e-11;
   options.number_options["mu_init"] = mu;
   options.number_options["mu_target"] = mu;
   return options;
