@@ -4,6 +4,7 @@
 //   hbar_benchmarks --ratios [N]     tables of ratios, medians over N repetitions (default 15)
 //   hbar_benchmarks --grasp [N]      the table of the grasp with contact alone
 //   hbar_benchmarks --systems [N]    solving with H, and its growth with the steps (doc/solvers.md)
+//   hbar_benchmarks --second-order [N]   Hessian-vector products against gradients
 //   hbar_benchmarks --repeat WORK MODEL N   one work N times, for a profiler
 
 #include <benchmark/benchmark.h>
@@ -15,6 +16,7 @@
 
 #include "hbar/core/error.h"
 #include "tests/benchmarks/ratios.h"
+#include "tests/benchmarks/second_order_ratios.h"
 #include "tests/benchmarks/system_ratios.h"
 #include "tests/benchmarks/workloads.h"
 
@@ -101,6 +103,10 @@ int run(int argc, char** argv) {
   }
   if (first == "--systems") {
     write_system_ratios(argc > 2 ? std::atoi(arguments[2]) : 5, std::cout);
+    return 0;
+  }
+  if (first == "--second-order") {
+    write_second_order_ratios(argc > 2 ? std::atoi(arguments[2]) : 5, std::cout);
     return 0;
   }
   if (first == "--repeat" && argc == 5) {
