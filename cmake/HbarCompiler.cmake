@@ -47,12 +47,6 @@ if(BUILD_SHARED_LIBS)
   set(CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
 endif()
 
-# hbar_compile_quickly(SOURCES... ): files of this folder that only read arguments or write text, for
-# which the optimiser takes longer than it ever saves.
-function(hbar_compile_quickly)
-  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
-endfunction()
-
 # The headers of every floor are reached as "hbar/FLOOR/file.h", through one include directory.
 set(HBAR_INCLUDE_DIR ${CMAKE_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${HBAR_INCLUDE_DIR}/hbar)
