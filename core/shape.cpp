@@ -57,7 +57,7 @@ UnitSolid<S> unit(const NoShape&, const Vector3<S>&) {
 }
 
 template <Scalar S>
-UnitSolid<S> rate(const Cuboid&, const Vector3<S>& size, int k) {
+UnitSolid<S> size_rate(const Cuboid&, const Vector3<S>& size, int k) {
   const UnitSolid<S> solid = unit<S>(Cuboid{}, size);
   UnitSolid<S> out{solid.mass / size[k], solid.moments / size[k]};
   for (int i = 0; i < 3; ++i) {
@@ -67,13 +67,13 @@ UnitSolid<S> rate(const Cuboid&, const Vector3<S>& size, int k) {
 }
 
 template <Scalar S>
-UnitSolid<S> rate(const Sphere&, const Vector3<S>& size, int) {
+UnitSolid<S> size_rate(const Sphere&, const Vector3<S>& size, int) {
   const UnitSolid<S> solid = unit<S>(Sphere{}, size);
   return {3.0 * solid.mass / size[0], (5.0 / size[0]) * solid.moments};
 }
 
 template <Scalar S>
-UnitSolid<S> rate(const Cylinder&, const Vector3<S>& size, int k) {
+UnitSolid<S> size_rate(const Cylinder&, const Vector3<S>& size, int k) {
   const UnitSolid<S> solid = unit<S>(Cylinder{}, size);
   const S& across = solid.moments[0];
   const S& along = solid.moments[2];
@@ -87,23 +87,23 @@ UnitSolid<S> rate(const Cylinder&, const Vector3<S>& size, int k) {
 }
 
 template <Scalar S>
-UnitSolid<S> rate(const Capsule&, const Vector3<S>& size, int k) {
+UnitSolid<S> size_rate(const Capsule&, const Vector3<S>& size, int k) {
   const S& r = size[0];
-  const UnitSolid<S> tube = rate<S>(Cylinder{}, size, k);
+  const UnitSolid<S> tube = size_rate<S>(Cylinder{}, size, k);
   const UnitSolid<S> ball = unit<S>(Sphere{}, size);
   const S out = 0.5 * size[1] + 0.375 * r;
   if (k == 1) {
     const S across = tube.moments.x() + ball.mass * out;
     return {tube.mass, {across, across, tube.moments.z()}};
   }
-  const UnitSolid<S> ball_rate = rate<S>(Sphere{}, size, 0);
+  const UnitSolid<S> ball_rate = size_rate<S>(Sphere{}, size, 0);
   const S across = tube.moments.x() + ball_rate.mass * ((0.4 - 9.0 / 64.0) * r * r + out * out) +
                    ball.mass * (2.0 * (0.4 - 9.0 / 64.0) * r + 0.75 * out);
   return {tube.mass + ball_rate.mass, {across, across, tube.moments.z() + ball_rate.moments.z()}};
 }
 
 template <Scalar S>
-UnitSolid<S> rate(const NoShape&, const Vector3<S>& size, int) {
+UnitSolid<S> size_rate(const NoShape&, const Vector3<S>& size, int) {
   return unit<S>(NoShape{}, size);  // says that there is none
 }
 
@@ -165,7 +165,7 @@ UnitSolid<S> unit_solid(const Shape& kind, const Vector3<S>& sizes) {
 
 template <Scalar S>
 UnitSolid<S> unit_solid_rate(const Shape& kind, const Vector3<S>& sizes, int k) {
-  return std::visit([&sizes, k](const auto& solid) { return rate<S>(solid, sizes, k); }, kind);
+  return std::visit([&sizes, k](const auto& solid) { return size_rate<S>(solid, sizes, k); }, kind);
 }
 
 template UnitSolid<double> unit_solid_rate(const Shape&, const Vector3<double>&, int);

@@ -11,11 +11,11 @@
 namespace hbar {
 namespace {
 
-std::size_t at(Eigen::Index index) { return static_cast<std::size_t>(index); }
+std::size_t to_size(Eigen::Index index) { return static_cast<std::size_t>(index); }
 
 /// Nodes, or coefficients, of a grid.
 std::size_t volume(const Eigen::Vector3i& count) {
-  return at(count.x()) * at(count.y()) * at(count.z());
+  return to_size(count.x()) * to_size(count.y()) * to_size(count.z());
 }
 
 void check_grid(const GridNodes& nodes, const Eigen::Vector3i& expected, std::size_t found) {
@@ -60,15 +60,16 @@ void interpolate_line(std::vector<double>& line, std::vector<double>& ratio) {
 
 /// Turns values into coefficients along one axis, on every line of a grid of coefficients.
 void interpolate_axis(std::vector<double>& grid, const Eigen::Vector3i& count, int axis) {
-  const std::array<std::size_t, 3> strides = {1, at(count.x()), at(count.x()) * at(count.y())};
-  const std::size_t stride = strides[at(axis)];
+  const std::array<std::size_t, 3> strides = {1, to_size(count.x()),
+                                              to_size(count.x()) * to_size(count.y())};
+  const std::size_t stride = strides[to_size(axis)];
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
-  std::vector<double> line(at(count[axis]));
+  std::vector<double> line(to_size(count[axis]));
   std::vector<double> ratio(line.size());
   for (int i = 0; i < count[u]; ++i) {
     for (int j = 0; j < count[v]; ++j) {
-      const std::size_t first = at(i) * strides[at(u)] + at(j) * strides[at(v)];
+      const std::size_t first = to_size(i) * strides[to_size(u)] + to_size(j) * strides[to_size(v)];
       for (std::size_t k = 0; k < line.size(); ++k) line[k] = grid[first + k * stride];
       interpolate_line(line, ratio);
       for (std::size_t k = 0; k < line.size(); ++k) grid[first + k * stride] = line[k];
@@ -92,7 +93,8 @@ AxisWeights axis_weights(double t, int count) {
   const double w = 1.0 - u;
   const int first = std::isnan(t) ? 0 : static_cast<int>(cell);
   AxisWeights axis = {};
-  for (int i = 0; i < 4; ++i) axis.places[at(i)] = at(std::clamp(first + i, 0, count + 1));
+  for (int i = 0; i < 4; ++i)
+    axis.places[to_size(i)] = to_size(std::clamp(first + i, 0, count + 1));
   axis.weights[0] = {w * w * w / 6.0, 2.0 / 3.0 - u * u * (1.0 - u / 2.0),
                      2.0 / 3.0 - w * w * (1.0 - w / 2.0), u * u * u / 6.0};
   axis.weights[1] = {-w * w / 2.0, u * (1.5 * u - 2.0), w * (2.0 - 1.5 * w), u * u / 2.0};
@@ -110,8 +112,8 @@ TricubicSpline TricubicSpline::through(const GridNodes& nodes, const std::vector
   auto value = values.begin();
   for (int k = 1; k <= nodes.count.z(); ++k) {
     for (int j = 1; j <= nodes.count.y(); ++j) {
-      const std::size_t row = (at(k) * at(count.y()) + at(j)) * at(count.x());
-      for (int i = 1; i <= nodes.count.x(); ++i) grid[row + at(i)] = *value++;
+      const std::size_t row = (to_size(k) * to_size(count.y()) + to_size(j)) * to_size(count.x());
+      for (int i = 1; i <= nodes.count.x(); ++i) grid[row + to_size(i)] = *value++;
     }
   }
   for (int axis = 0; axis < 3; ++axis) interpolate_axis(grid, count, axis);
@@ -132,8 +134,8 @@ auto TricubicSpline::derivatives(const Eigen::Vector3d& x) const {
   const AxisWeights wx = axis_weights(t.x(), nodes_.count.x());
   const AxisWeights wy = axis_weights(t.y(), nodes_.count.y());
   const AxisWeights wz = axis_weights(t.z(), nodes_.count.z());
-  const std::size_t row = at(nodes_.count.x()) + 2;
-  const std::size_t slice = row * (at(nodes_.count.y()) + 2);
+  const std::size_t row = to_size(nodes_.count.x()) + 2;
+  const std::size_t slice = row * (to_size(nodes_.count.y()) + 2);
 
   std::array<std::array<std::array<double, kCount>, kCount>, kCount> result = {};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -181,7 +183,7 @@ Eigen::Matrix3d TricubicSpline::hessian_slope(const Eigen::Vector3d& x,
     for (int j = 0; j < 3; ++j) {
       for (int k = 0; k < 3; ++k) {
         std::array<std::size_t, 3> order = {};
-        for (const int axis : {i, j, k}) ++order[at(axis)];
+        for (const int axis : {i, j, k}) ++order[to_size(axis)];
         slope(i, j) += D[order[0]][order[1]][order[2]] * direction[k] / (h * h * h);
       }
     }

@@ -36,8 +36,8 @@ Model two_links() {
   return builder.build();
 }
 
-constexpr int kSteps = 24;
-constexpr int kSegments = 4;
+constexpr int kReachSteps = 24;
+constexpr int kReachSegments = 4;
 
 /// To a point in space and to rest there, with little effort, power limited; the forearm may be
 /// shifted, and the first posture is free within bounds.
@@ -48,9 +48,9 @@ TrajectoryProblem reach_problem() {
   SimulationOptions options;
   options.integrator = "bdf2";
   options.h = 0.03;
-  options.steps = kSteps;
+  options.steps = kReachSteps;
   options.newton.rtol = 1e-13;
-  options.restarts = segment_starts(kSteps, kSegments);
+  options.restarts = segment_starts(kReachSteps, kReachSegments);
   options.measurements = {MotorPower{"shoulder power", 0}};
   TrajectoryProblem out{.simulator = Simulator(model, set, options),
                         .map = std::make_shared<IdentityDesignMap>(set),
@@ -64,18 +64,18 @@ TrajectoryProblem reach_problem() {
   out.controls.hold = 2;
   out.controls.lower = Eigen::Vector2d::Constant(-25.0);
   out.controls.upper = Eigen::Vector2d::Constant(25.0);
-  out.constraints = {variable_at_step(model, "tip", kSteps, {0.45, 0.0, 0.35}),
-                     rate_limits(model, 0, {kSteps}, 0.0, 0.0),
-                     rate_limits(model, 1, {kSteps}, 0.0, 0.0),
+  out.constraints = {variable_at_step(model, "tip", kReachSteps, {0.45, 0.0, 0.35}),
+                     rate_limits(model, 0, {kReachSteps}, 0.0, 0.0),
+                     rate_limits(model, 1, {kReachSteps}, 0.0, 0.0),
                      value_limits("shoulder power", ValueField::kMeasured, 0,
-                                  step_range(1, kSteps, 3), -20.0, 20.0)};
+                                  step_range(1, kReachSteps, 3), -20.0, 20.0)};
   out.initial = InitialStateBounds{Eigen::Vector2d(0.7, 0.2), Eigen::Vector2d(1.1, 0.6),
                                    Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
   return out;
 }
 
 TranscriptionOptions options_of(Formulation formulation) {
-  return {.formulation = formulation, .segments = kSegments, .threads = 2};
+  return {.formulation = formulation, .segments = kReachSegments, .threads = 2};
 }
 
 IpoptResult solve(Transcription& nlp, HessianKind hessian) {
