@@ -303,9 +303,13 @@ const Gradient& SecondOrderSweep::product(const TrajectoryPartials* weights_tang
 }
 
 HessianProduct::HessianProduct(Simulator& simulator, Objective objective)
-    : simulator_(simulator), objective_(std::move(objective)), sweep_(simulator) {}
+    : simulator_(simulator),
+      objective_(std::move(objective)),
+      sweep_(simulator),
+      adjoint_(simulator) {}
 
 const Gradient& HessianProduct::set_point(const Trajectory& trajectory) {
+  trajectory_ = &trajectory;
   values_ = simulator_.values(trajectory);
   places_ = objective_.second_places(values_);
   second_ = objective_.second_partials(values_);
@@ -314,11 +318,15 @@ const Gradient& HessianProduct::set_point(const Trajectory& trajectory) {
   return gradient_;
 }
 
-const Gradient& HessianProduct::along(const Inputs& direction) {
+const Gradient& HessianProduct::along(const Inputs& direction, solvers::HessianKind kind) {
+  if (kind == solvers::HessianKind::kLimitedMemory) {
+    throw InvalidInput("second order: a limited-memory Hessian is an optimiser's own");
+  }
   const ValueTangent& tangent = sweep_.push_forward(direction);
   TrajectoryPartials moved(values_);
   add_second_order(places_, second_, tangent, moved);
-  product_ = sweep_.product(&moved);
+  product_ = kind == solvers::HessianKind::kExact ? sweep_.product(&moved)
+                                                  : adjoint_.pull_back(*trajectory_, moved);
   product_.value = 0.5 * (product_.p.dot(direction.p) + product_.u.cwiseProduct(direction.u).sum() +
                           product_.q0.dot(direction.q0) + product_.qdot0.dot(direction.qdot0));
   return product_;

@@ -2,6 +2,7 @@
 
 #include "hbar/adjoint/gradient.h"
 #include "hbar/adjoint/value_access.h"
+#include "hbar/solvers/nlp.h"
 
 namespace hbar {
 
@@ -48,7 +49,7 @@ class SecondOrderSweep {
   std::unique_ptr<Workspace> work_;
 };
 
-/// Exact Hessian-vector products of one objective at one trajectory.
+/// Hessian-vector products, exact or Gauss-Newton, of one objective at one trajectory.
 ///
 /// Belongs to one thread at a time.
 class HessianProduct {
@@ -60,17 +61,23 @@ class HessianProduct {
   /// @returns           Ψ and its gradient there
   const Gradient& set_point(const Trajectory& trajectory);
 
-  /// (d²Ψ/d(inputs)²) direction.
+  /// (d²Ψ/d(inputs)²) direction, or without the curvature of the trajectory: Vᵀ (∂²Ψ/∂values²) V
+  /// direction with V = d(values)/d(inputs), positive semidefinite for sums of squares.
   ///
   /// @param direction  shaped like the inputs
+  /// @param kind       kExact or kGaussNewton
   /// @returns          shaped like a gradient, value = ½ directionᵀ H direction; valid until the
   ///                   next call
-  const Gradient& along(const Inputs& direction);
+  /// @throws InvalidInput for a direction of another shape, or kLimitedMemory
+  const Gradient& along(const Inputs& direction,
+                        solvers::HessianKind kind = solvers::HessianKind::kExact);
 
  private:
   Simulator& simulator_;
   Objective objective_;
   SecondOrderSweep sweep_;
+  AdjointSweep adjoint_;  // of products without curvature
+  const Trajectory* trajectory_ = nullptr;
   TrajectoryValues values_;
   Gradient gradient_;
   Gradient product_;

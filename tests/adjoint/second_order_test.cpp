@@ -130,6 +130,27 @@ TEST(SecondOrder, TangentsAreThoseOfTheAssembledSystem) {
   EXPECT_LT(testing::relative_gap(Eigen::VectorXd(tangent.v.reshaped()), expected.v.col(0)), 1e-11);
 }
 
+TEST(SecondOrder, WithoutCurvatureIsExactWhereTheMotionIsTheTarget) {
+  Problem problem = testing::small_problem("bdf2");
+  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+  const TrajectoryValues values = problem.simulator.values(trajectory);
+  Objective objective(tracking(values.q.rightCols(values.q.cols() - 1)));
+  objective.add(variable_tracking(values.v.rightCols(values.v.cols() - 1), 0.3));
+  const Inputs direction = unflatten(some_direction(problem.inputs, 5), problem.inputs);
+  HessianProduct there(problem.simulator, objective);
+  static_cast<void>(there.set_point(trajectory));
+  const Eigen::VectorXd exact = flatten(there.along(direction));
+  const Eigen::VectorXd gauss_newton =
+      flatten(there.along(direction, solvers::HessianKind::kGaussNewton));
+  EXPECT_LT(testing::relative_gap(gauss_newton, exact), 1e-9);
+
+  HessianProduct elsewhere(problem.simulator, problem.objective);
+  static_cast<void>(elsewhere.set_point(trajectory));
+  const Gradient product = elsewhere.along(direction, solvers::HessianKind::kGaussNewton);
+  EXPECT_GT(product.value, 0.0);
+  EXPECT_GT(testing::relative_gap(flatten(product), flatten(elsewhere.along(direction))), 1e-3);
+}
+
 TEST(SecondOrder, RefusesADirectionOfAnotherShape) {
   Problem problem = testing::small_problem("bdf1");
   const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
@@ -138,6 +159,9 @@ TEST(SecondOrder, RefusesADirectionOfAnotherShape) {
   Inputs direction = problem.inputs;
   direction.q0.conservativeResize(1);
   EXPECT_THROW(static_cast<void>(hessian.along(direction)), InvalidInput);
+  EXPECT_THROW(
+      static_cast<void>(hessian.along(problem.inputs, solvers::HessianKind::kLimitedMemory)),
+      InvalidInput);
 }
 
 }  // namespace
