@@ -1,0 +1,218 @@
+#include "rig.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "hbar/adjoint/transcription.h"
+#include "hbar/core/error.h"
+#include "hbar/scene/build_model.h"
+#include "hbar/scene/read_xml.h"
+
+namespace hbar::identify {
+namespace {
+
+constexpr double kTimeStep = 0.01;   // s
+constexpr double kFirstAngle = 0.8;  // of the rod, rad
+
+// Shares of the greatest forces, each for a tenth of the time: pushes to and fro, so that inertia,
+// damping and friction do not look alike, with the shoe down, half down and up.
+constexpr std::array<double, 10> kPush = {0.6, -0.5, 0.5, 0.2, -0.6, 0.4, 0.3, -0.6, -0.1, 0.5};
+constexpr std::array<double, 10> kPress = {-0.5, -0.5, 0.0,  -0.8, -0.8,
+                                           -0.4, 0.0,  -0.6, -0.3, -0.7};
+
+// Where a fit begins unless told: factors of the truth.
+constexpr std::array<double, 5> kWrong = {1.6, 0.6, 2.5, 0.4, 0.5};
+
+bool is_mass(const std::string& name) {
+  return name.starts_with("body.") && name.ends_with(".mass");
+}
+
+/// "body.rod.inertia" of "body.rod.mass".
+std::string inertia_of(const std::string& mass) {
+  return mass.substr(0, mass.size() - std::string("mass").size()) + "inertia";
+}
+
+Eigen::MatrixXd excitation(int steps, bool sliding) {
+  Eigen::MatrixXd u(2, steps);
+  for (int k = 0; k < steps; ++k) {
+    const auto part = static_cast<std::size_t>(10 * k / steps);
+    u.col(k) << kPush[part], sliding ? kPress[part] : 0.0;
+  }
+  return u;
+}
+
+/// The names of the controls and of the coordinates that are measured.
+study::TrajectoryNames recorded_names(const Rig& rig, const Sigmas& sigmas,
+                                      std::vector<int>& coordinates) {
+  const study::TrajectoryNames all = study::trajectory_names(rig.simulator);
+  study::TrajectoryNames out;
+  out.u = all.u;
+  for (std::size_t i = 0; i < all.q.size(); ++i) {
+    if (sigmas.contains(all.q[i])) {
+      out.q.push_back(all.q[i]);
+      coordinates.push_back(static_cast<int>(i));
+    }
+  }
+  if (out.q.empty()) {
+    throw InvalidInput("identify: no coordinate of the scene has a standard deviation");
+  }
+  return out;
+}
+
+/// The controls of a table, which must be whole if there are any.
+Eigen::MatrixXd controls_of(const study::TrajectoryData& data, const Rig& rig,
+                            const std::string& file) {
+  Eigen::MatrixXd u = Eigen::MatrixXd::Constant(rig.u.rows(), rig.u.cols(),
+                                                std::numeric_limits<double>::quiet_NaN());
+  bool any = false;
+  for (std::size_t i = 0; i < data.places.size(); ++i) {
+    if (data.places[i].field == ValueField::kU) {
+      u(data.places[i].index, data.places[i].step) = data.data[static_cast<Eigen::Index>(i)];
+      any = true;
+    }
+  }
+  if (!any) {
+    return rig.u;
+  }
+  if (!u.allFinite()) {
+    throw InvalidInput(concat(file, ": controls must be given for all ", u.rows(),
+                              " motors and at each of the ", u.cols(), " steps, or not at all"));
+  }
+  return u;
+}
+
+}  // namespace
+
+ParameterSet UnknownsMap::parameters_of(const Model& model,
+                                        const std::vector<std::string>& unknowns) {
+  std::vector<std::string> names;
+  for (const std::string& unknown : unknowns) {
+    names.push_back(unknown);
+    if (is_mass(unknown)) {
+      names.push_back(inertia_of(unknown));
+    }
+  }
+  return ParameterSet::named(model, names);
+}
+
+UnknownsMap::UnknownsMap(const ParameterSet& set, const std::vector<std::string>& unknowns,
+                         const Eigen::VectorXd& start) {
+  const auto count = static_cast<Eigen::Index>(unknowns.size());
+  P_ = Eigen::MatrixXd::Zero(set.size(), count);
+  nominal_.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::string& name = unknowns[static_cast<std::size_t>(i)];
+    const Parameter& parameter = set[set.find(name)];
+    if (!(parameter.nominal > 0.0)) {
+      throw InvalidInput(concat("identify: '", name, "' is ", parameter.nominal,
+                                " in the scene; what is unknown must be positive there"));
+    }
+    nominal_[i] = parameter.nominal;
+    P_(set.find(name), i) = 1.0;
+    if (is_mass(name)) {
+      for (const char* axis : {".x", ".y", ".z"}) {
+        const int moment = set.find(inertia_of(name) + axis);
+        P_(moment, i) = set[moment].nominal / parameter.nominal;
+      }
+    }
+    variables_.units.push_back(parameter.unit);
+  }
+  variables_.names = unknowns;
+  variables_.start = nominal_.cwiseProduct(start);
+  variables_.lower = 1e-3 * nominal_;
+  variables_.upper = 1e3 * nominal_;
+  variables_.scale = nominal_;
+}
+
+Sigmas default_sigmas() { return {{"rail", 1e-3}, {"hinge", 5e-3}}; }
+
+std::vector<std::string> default_unknowns() {
+  return {"body.carriage.mass", "body.rod.mass", "joint.rail.damping", "joint.hinge.damping",
+          "contact.brake.mu"};
+}
+
+Rig make_rig(const RigOptions& options) {
+  const Model model = scene::build_model(scene::read_scene(options.scene));
+  if (model.dof() != 3 || model.control_count() != 2) {
+    throw InvalidInput(
+        concat("identify: the scene has ", model.dof(), " coordinates and ", model.control_count(),
+               " motors; it must have rail, guide and hinge, and a motor on rail and "
+               "guide"));
+  }
+  const ParameterSet set = UnknownsMap::parameters_of(model, options.unknowns);
+  Eigen::VectorXd start = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(options.unknowns.size()));
+  for (Eigen::Index i = 0; options.wrong_start && i < start.size(); ++i) {
+    start[i] = kWrong[static_cast<std::size_t>(i) % kWrong.size()];
+  }
+  SimulationOptions simulation;
+  simulation.integrator = "bdf2";
+  simulation.h = kTimeStep;
+  simulation.steps = options.steps;
+  simulation.restarts = segment_starts(options.steps, options.segments);
+  return {.simulator = Simulator(model, set, simulation),
+          .map = std::make_shared<UnknownsMap>(set, options.unknowns, start),
+          .u = excitation(options.steps, options.sliding),
+          .q0 = Eigen::Vector3d(0.0, 0.0, kFirstAngle)};
+}
+
+std::string recorded_csv(const Rig& rig, const Sigmas& sigmas, std::mt19937_64& random) {
+  std::vector<int> coordinates;
+  const study::TrajectoryNames names = recorded_names(rig, sigmas, coordinates);
+  Simulator simulator = rig.simulator;
+  Inputs inputs = simulator.nominal_inputs();
+  inputs.p = rig.map->parameters(rig.map->nominal());
+  inputs.u = rig.u;
+  inputs.q0 = rig.q0;
+  const TrajectoryValues truth = simulator.values(simulator.rollout(inputs).trajectory());
+  TrajectoryValues recorded;
+  recorded.h = truth.h;
+  recorded.u = truth.u;
+  recorded.q.resize(static_cast<Eigen::Index>(coordinates.size()), truth.q.cols());
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    std::normal_distribution<double> error(0.0, sigmas.at(names.q[i]));
+    for (Eigen::Index k = 0; k < truth.q.cols(); ++k) {
+      recorded.q(row, k) = truth.q(coordinates[i], k) + error(random);
+    }
+  }
+  return study::trajectory_csv(names, recorded);
+}
+
+Recording read_recording(const Rig& rig, const Sigmas& sigmas, const std::string& text,
+                         const std::string& file) {
+  const study::TrajectoryNames names = study::trajectory_names(rig.simulator);
+  const study::TrajectoryData all = study::read_trajectory_csv(
+      text, file, names, {.h = rig.simulator.options().h, .steps = rig.simulator.options().steps});
+  Recording out;
+  out.u = controls_of(all, rig, file);
+  out.data.names = all.names;
+  std::vector<double> numbers;
+  std::vector<double> sigma;
+  for (std::size_t i = 0; i < all.places.size(); ++i) {
+    if (all.places[i].field == ValueField::kU) {
+      continue;
+    }
+    const ValuePlace& place = all.places[i];
+    const auto index = static_cast<std::size_t>(place.index);
+    const std::string& name = place.field == ValueField::kQ      ? names.q[index]
+                              : place.field == ValueField::kQdot ? names.qdot[index]
+                                                                 : all.names[all.column[i]];
+    const auto known = sigmas.find(name);
+    if (known == sigmas.end()) {
+      throw InvalidInput(concat(file, ": column '", name,
+                                "' has no standard deviation; give --sigma ", name, "=NUMBER"));
+    }
+    out.data.places.push_back(place);
+    out.data.column.push_back(all.column[i]);
+    numbers.push_back(all.data[static_cast<Eigen::Index>(i)]);
+    sigma.push_back(known->second);
+  }
+  const auto count = static_cast<Eigen::Index>(numbers.size());
+  out.data.data = Eigen::Map<const Eigen::VectorXd>(numbers.data(), count);
+  out.sigma = Eigen::Map<const Eigen::VectorXd>(sigma.data(), count);
+  return out;
+}
+
+}  // namespace hbar::identify
