@@ -5,6 +5,7 @@
 #include "hbar/adjoint/state_variables.h"
 #include "hbar/adjoint/value_access.h"
 #include "hbar/core/error.h"
+#include "hbar/solvers/scaled_nlp.h"
 
 namespace hbar {
 namespace {
@@ -94,9 +95,12 @@ void InputVariables::describe_design_and_controls() {
                ? vector
                : Eigen::VectorXd(filled(vector, control_count_, value, name).replicate(blocks_, 1));
   };
-  append(variables_, start.reshaped(), repeated(held.lower, -kUnbounded, "controls.lower"),
-         repeated(held.upper, kUnbounded, "controls.upper"),
-         repeated(held.scale, 1.0, "controls.scale"));
+  const Eigen::VectorXd lower = repeated(held.lower, -kUnbounded, "controls.lower");
+  const Eigen::VectorXd upper = repeated(held.upper, kUnbounded, "controls.upper");
+  const Eigen::VectorXd flat = start.reshaped();
+  append(variables_, flat, lower, upper,
+         held.scale.size() == 0 ? solvers::scale_from_bounds(lower, upper, flat)
+                                : repeated(held.scale, 1.0, "controls.scale"));
   for (int b = 0; b < blocks_; ++b) {
     for (int i = 0; i < control_count_; ++i) {
       variables_.names.push_back(concat("control.", problem_.simulator.model().control_name(i),

@@ -17,7 +17,8 @@ struct HeldControls {
   Eigen::VectorXd lower;  ///< empty: none; of all blocks, or block by block
                           ///<                                    [controls or controls·blocks]
   Eigen::VectorXd upper;  ///< the same; where lower = upper a control is given, not looked for
-  Eigen::VectorXd scale;  ///< typical size of a change; empty: ones                 [controls]
+  Eigen::VectorXd scale;  ///< typical size of a change; empty: solvers::scale_from_bounds
+                          ///<                                    [controls or controls·blocks]
 };
 
 /// Bounds of an initial state that is looked for. Where lower = upper a number is held.
