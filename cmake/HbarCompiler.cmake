@@ -99,7 +99,7 @@ function(hbar_add_floor name)
   target_include_directories(hbar_${name} PUBLIC
     $<BUILD_INTERFACE:${HBAR_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(hbar_${name} PRIVATE $<BUILD_INTERFACE:hbar_flags>)
-  if(name MATCHES "^(core|scene|adjoint|study)$")
+  if(name MATCHES "^(core|scene|solvers|adjoint|study)$")
     hbar_compile_in_batches(hbar_${name})
   endif()
   # Eigen takes a third of most files' compilation; it is read once.
