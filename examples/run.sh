@@ -3,8 +3,9 @@
 #
 #   examples/run.sh [EXAMPLE] [options of the example]
 #
-# EXAMPLE is finger_reach (the default), swing_up, identify, rotate_box, flip_box or assemble. Installs
-# what is missing, builds hbar and the example, and runs it. The results are written to results/EXAMPLE.
+# EXAMPLE is finger_reach (the default), swing_up, walker, identify, rotate_box, flip_box or assemble.
+# Installs what is missing, builds hbar and the example, and runs it. The results are written to
+# results/EXAMPLE.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -12,7 +13,7 @@ example=finger_reach
 folder=finger_reach
 case "${1-}" in
   finger_reach) shift ;;
-  swing_up | identify)
+  swing_up | walker | identify)
     example=$1
     folder=$1
     shift
@@ -24,8 +25,8 @@ case "${1-}" in
     ;;
   -* | "") ;;
   *)
-    echo "examples/run.sh: no example '$1'; known: finger_reach, swing_up, identify, rotate_box," \
-      "flip_box, assemble" >&2
+    echo "examples/run.sh: no example '$1'; known: finger_reach, swing_up, walker, identify," \
+      "rotate_box, flip_box, assemble" >&2
     exit 2
     ;;
 esac
