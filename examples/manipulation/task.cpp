@@ -1,7 +1,9 @@
 #include "task.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "hbar/adjoint/generic_terms.h"
 #include "hbar/adjoint/objective_terms.h"
 #include "hbar/core/error.h"
 #include "hbar/scene/build_model.h"
@@ -38,72 +40,46 @@ Eigen::MatrixXd guessed_controls(const Task& task, int controls) {
   return out;
 }
 
-/// ½ Σ_k ‖(u_k − u_{k−1}) / scale‖²: what held positions have to move.
-TermPointer control_changes(const Eigen::VectorXd& scale) {
-  const Eigen::VectorXd weight = scale.cwiseAbs2().cwiseInverse();
-  const auto changes = [](const TrajectoryValues& values) -> Eigen::MatrixXd {
-    const Eigen::Index steps = values.u.cols();
-    return values.u.rightCols(steps - 1) - values.u.leftCols(steps - 1);
-  };
-  return user_term(
-      "changes of controls",
-      [=](const TrajectoryValues& values) {
-        return 0.5 * (weight.asDiagonal() * changes(values).cwiseAbs2()).sum();
-      },
-      [=](const TrajectoryValues& values, TrajectoryPartials& partials) {
-        const Eigen::MatrixXd weighted = weight.asDiagonal() * changes(values);
-        partials.u.rightCols(weighted.cols()) += weighted;
-        partials.u.leftCols(weighted.cols()) -= weighted;
-      });
-}
-
-TermPointer rest_at_end(double weight) {
-  return user_term(
-      "rest at the end",
-      [weight](const TrajectoryValues& values) {
-        return 0.5 * weight * values.qdot.rightCols<1>().squaredNorm();
-      },
-      [weight](const TrajectoryValues& values, TrajectoryPartials& partials) {
-        partials.qdot.rightCols<1>() += weight * values.qdot.rightCols<1>();
-      });
-}
-
-/// ½ weight Σ_k h ((q_k − path_k) / tolerance)² of the goals, where the path rises smoothly from
-/// the start to the target and stays there for the last part of the time.
-TermPointer goal_paths(const Task& task, const Model& model, const Eigen::VectorXd& q0) {
-  std::vector<int> index;
-  for (const Goal& goal : task.goals) {
-    index.push_back(coordinate_index(model, goal.coordinate));
+/// ½ Σ_k ‖(u_k − u_{k−1}) / scale‖²: what held positions have to move. Only where one block of
+/// controls follows another can they change.
+TermPointer control_changes(const Task& task) {
+  std::vector<std::vector<ValuePlace>> pairs;
+  std::vector<double> weights;
+  for (int k = task.hold; k < task.steps; k += task.hold) {
+    for (int i = 0; i < static_cast<int>(task.control_scale.size()); ++i) {
+      pairs.push_back({{ValueField::kU, k - 1, i}, {ValueField::kU, k, i}});
+      weights.push_back(1.0 / (task.control_scale[i] * task.control_scale[i]));
+    }
   }
-  const auto miss = [=](const TrajectoryValues& values, std::size_t i, Eigen::Index k) {
-    const double last = static_cast<double>(values.q.cols() - 1);
-    const double share = std::clamp(
-        (static_cast<double>(k) / last - task.path_begin) / (task.path_end - task.path_begin), 0.0,
-        1.0);
-    const double rise = share * share * (3.0 - 2.0 * share);
-    const double start = q0[index[i]];
-    const double path = start + rise * (task.goals[i].target - start);
-    return values.q(index[i], k) - path;
-  };
-  return user_term(
-      "paths to the goals",
-      [=](const TrajectoryValues& values) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < index.size(); ++i) {
-          for (Eigen::Index k = 1; k < values.q.cols(); ++k) {
-            const double e = miss(values, i, k);
-            sum += 0.5 * task.goals[i].weight * values.h * e * e;
-          }
-        }
-        return sum;
-      },
-      [=](const TrajectoryValues& values, TrajectoryPartials& partials) {
-        for (std::size_t i = 0; i < index.size(); ++i) {
-          for (Eigen::Index k = 1; k < values.q.cols(); ++k) {
-            partials.q(index[i], k) += task.goals[i].weight * values.h * miss(values, i, k);
-          }
-        }
-      });
+  const auto half_square = [](auto u) { return 0.5 * (u[1] - u[0]) * (u[1] - u[0]); };
+  return generic_sum(
+      "changes of controls", std::move(pairs), half_square,
+      Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size())));
+}
+
+/// ½ Σ weight ∫ (q − path)² dt of the goals, where the path rises smoothly from the start to the
+/// target and stays there for the last part of the time.
+TermPointer goal_paths(const Task& task, const Model& model, const Eigen::VectorXd& q0) {
+  std::vector<StepSum> sums;
+  for (const Goal& goal : task.goals) {
+    const int index = coordinate_index(model, goal.coordinate);
+    Eigen::MatrixXd path(1, task.steps);
+    for (int k = 1; k <= task.steps; ++k) {
+      const double share = std::clamp((static_cast<double>(k) / task.steps - task.path_begin) /
+                                          (task.path_end - task.path_begin),
+                                      0.0, 1.0);
+      const double rise = share * share * (3.0 - 2.0 * share);
+      path(0, k - 1) = q0[index] + rise * (goal.target - q0[index]);
+    }
+    sums.push_back({.field = ValueField::kQ,
+                    .rows = {index},
+                    .target = std::move(path),
+                    .weight = goal.weight,
+                    .times_h = true});
+  }
+  return separable_term("paths to the goals", std::move(sums), [](double miss) {
+    return Jet{0.5 * miss * miss, miss, 1.0};
+  });
 }
 
 std::vector<FixedParameter> fixed_parameters(const Task& task, double contact_scale) {
@@ -143,9 +119,11 @@ std::unique_ptr<Transcription> make_problem(const Task& task, double contact_sca
   for (const auto& [name, value] : task.start) {
     q0[coordinate_index(model, name)] = value;
   }
-  Objective objective(control_changes(task.control_scale));
+  Objective objective(control_changes(task));
   objective.add(goal_paths(task, model, q0));
-  objective.add(squared_velocity(task.velocity_weight)).add(rest_at_end(task.rest_weight));
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.dof());
+  objective.add(squared_velocity(task.velocity_weight))
+      .add(terminal_state(rest, rest, 0.0, task.rest_weight));
   return transcribe(TrajectoryProblem{.simulator = Simulator(model, set, simulation),
                                       .map = std::move(map),
                                       .objective = std::move(objective),

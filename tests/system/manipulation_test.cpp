@@ -63,13 +63,13 @@ TEST(Manipulation, HasTheGradientThatDifferencesGive) {
 TEST(Manipulation, MapsLengthsAffinely) {
   const Task task = rotate_box();
   const auto problem = make_problem(task, 1.0);
-  const DesignMap& map = *problem->parts().map;
+  const DesignMap& map = *problem->problem().map;
   const DesignMapCheck check = check_design_map(map, map.variables().start);
   EXPECT_LT(check.gap, 1e-9);
   EXPECT_TRUE(check.has_hessian);
   EXPECT_EQ(check.hessian_gap, 0.0);
   const Eigen::VectorXd p = map.parameters(map.variables().start);
-  EXPECT_LT((p - problem->parts().simulator.parameters().nominal()).norm(), 1e-15);
+  EXPECT_LT((p - problem->problem().simulator.parameters().nominal()).norm(), 1e-15);
 }
 
 TEST(Manipulation, RefusesATaskOfAnotherScene) {
