@@ -27,7 +27,7 @@ std::unique_ptr<Transcription> begin(const SwingUp& swing_up,
 
 std::string compared(const char* kind, const example::Optimised& found, double seconds) {
   const solvers::EvaluationCounts& n = found.result.evaluations;
-  return fmt::format("{:<16} {:<16} {:>10} {:>6} {:>9} {:>9} {:>8} {:>12.8f} {:>8.2f} s\n", kind,
+  return fmt::format("{:<15} {:<35} {:>10} {:>6} {:>9} {:>9} {:>8} {:>12.8f} {:>8.2f} s\n", kind,
                      solvers::to_string(found.result.status), found.result.iterations, n.objective,
                      n.gradient, n.jacobian, n.hessian, found.result.objective, seconds);
 }
@@ -158,7 +158,7 @@ std::vector<TailStep> convergence_tail(const std::vector<solvers::IterationInfo>
 
 example::ExitCode compare_hessians(const SwingUp& swing_up,
                                    const example::OptimiseArguments& given) {
-  std::string table = fmt::format("\n{:<16} {:<16} {:>10} {:>6} {:>9} {:>9} {:>8} {:>12} {:>10}\n",
+  std::string table = fmt::format("\n{:<15} {:<35} {:>10} {:>6} {:>9} {:>9} {:>8} {:>12} {:>10}\n",
                                   "Hessian", "ended", "iterations", "values", "gradients",
                                   "Jacobians", "Hessians", "effort", "CPU time");
   example::OptimiseArguments arguments = given;
