@@ -31,7 +31,7 @@ ExitCode run(const Arguments& arguments) {
   example::make_folder(arguments.optimise.out);
   if (arguments.scaling) {
     print(scaling_table(measure_scaling(arguments.scene, {100, 1000, 10000})));
-    return ExitCode::kOk;
+    return example::stop_flag() ? ExitCode::kInterrupted : ExitCode::kOk;
   }
   const SwingUp swing_up = make_swing_up(arguments.scene, arguments.steps);
   if (arguments.compare) {
