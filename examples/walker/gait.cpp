@@ -42,12 +42,33 @@ double friction_use(const TrajectoryValues& values, double weight) {
   for (Eigen::Index k = 0; k < values.measured.cols(); ++k) {
     for (int foot = 0; foot < 2; ++foot) {
       const auto force = values.measured.col(k).segment<kForceRows>(kPowers + kForceRows * foot);
-      if (force[0] > 0.05 * weight) {
+      if (force[0] > kCarries * weight) {
         use = std::max(use, std::abs(force[1]) / force[0]);
       }
     }
   }
   return use;
+}
+
+/// Path of the feet's deepest points along the ground, what rolls taken off, in half a gait.
+double slip_of(const TrajectoryValues& values, const Gait& gait, const Model& model, int steps) {
+  double slip = 0.0;
+  for (int foot = 0; foot < 2; ++foot) {
+    const int link = model.find_body(foot == 0 ? "left_foot" : "right_foot");
+    const double radius = std::get<Sphere>(model.link(link).body.shape).radius;
+    const int hip = 3 + 2 * foot;
+    const auto turned = [&](int k) {  // of the ball, against rolling forward
+      return values.q(2, k) + values.q(hip, k) + values.q(hip + 1, k);
+    };
+    for (int k = 1; k <= steps; ++k) {
+      if (std::min(gait.load(foot, k), gait.load(foot, k - 1)) > kCarries * gait.weight) {
+        const int x = 3 * foot;
+        slip +=
+            std::abs(values.v(x, k) - values.v(x, k - 1) + radius * (turned(k) - turned(k - 1)));
+      }
+    }
+  }
+  return slip;
 }
 
 }  // namespace
@@ -56,7 +77,11 @@ Gait examine(const Plan& plan, const TrajectoryProblem& problem, const Trajector
              const Eigen::VectorXd& lengths) {
   SimulationOptions options = problem.simulator.options();
   options.steps = 2 * plan.steps;
-  options.restarts = {plan.steps};
+  options.restarts = plan.restarts;
+  options.restarts.push_back(plan.steps);
+  for (const int step : plan.restarts) {
+    options.restarts.push_back(plan.steps + step);
+  }
   Simulator simulator(problem.simulator.shared_model(), problem.simulator.parameters(), options);
   Inputs inputs = simulator.nominal_inputs();
   inputs.p = values.p;
@@ -85,6 +110,7 @@ Gait examine(const Plan& plan, const TrajectoryProblem& problem, const Trajector
   gait.load.row(0) = stride.measured.row(kPowers);
   gait.load.row(1) = stride.measured.row(kPowers + kForceRows);
   gait.friction_use = friction_use(stride, gait.weight);
+  gait.slip = slip_of(stride, gait, simulator.model(), plan.steps);
   return gait;
 }
 
@@ -94,7 +120,7 @@ std::string gait_diagram(const Gait& gait) {
     text += foot == 0 ? "  left   " : "  right  ";
     for (Eigen::Index k = 0; k < gait.load.cols(); k += 2) {
       const double share = gait.load(foot, k) / gait.weight;
-      text += share > 0.5 ? '#' : (share > 0.05 ? '+' : '.');
+      text += share > 0.5 ? '#' : (share > kCarries ? '+' : '.');
     }
     text += '\n';
   }

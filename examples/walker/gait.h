@@ -25,6 +25,7 @@ struct Gait {
   StateGap whole;                  ///< after 2N steps, from the start
   Eigen::Matrix2Xd load;           ///< normal force on left and right foot, N        [2 x 2N+1]
   double friction_use = 0.0;       ///< largest |tangential| / normal force of a foot that carries
+  double slip = 0.0;               ///< how far feet slide in half a gait while they carry, m
 };
 
 /// Simulates a gait and looks at it.
@@ -35,8 +36,11 @@ struct Gait {
 [[nodiscard]] Gait examine(const Plan& plan, const TrajectoryProblem& problem,
                            const TrajectoryValues& values, const Eigen::VectorXd& lengths);
 
+/// A foot carries when its load exceeds this share of the weight.
+constexpr double kCarries = 0.05;
+
 /// Two lines, a character for each two steps: '#' where a foot carries more than half the weight,
-/// '+' more than a twentieth, '.' less.
+/// '+' while it carries, '.' else.
 [[nodiscard]] std::string gait_diagram(const Gait& gait);
 
 }  // namespace hbar::walker

@@ -110,6 +110,9 @@ ExitCode run_line(int argc, char** argv) {
   if (lengths == "fixed") {
     arguments.plan.length_share = 0.0;
   }
+  if (find_formulation(arguments.optimise.formulation) == Formulation::kMultipleShooting) {
+    arguments.plan.restarts = segment_starts(arguments.plan.steps, arguments.optimise.segments);
+  }
   return run(arguments);
 }
 

@@ -34,7 +34,8 @@ Json json_of(const Stage& stage) {
             {"gait_gap", json_of(gait.whole)},
             {"least_normal_force", gait.load.minCoeff()},
             {"greatest_normal_force", gait.load.maxCoeff()},
-            {"friction_use", gait.friction_use}}}};
+            {"friction_use", gait.friction_use},
+            {"slip", gait.slip}}}};
 }
 
 }  // namespace
@@ -55,6 +56,7 @@ std::string summary(const Plan& plan, const std::vector<Stage>& stages) {
       b.load.maxCoeff() / b.weight);
   row("least load of a foot, N", a.load.minCoeff(), b.load.minCoeff());
   row("friction / normal force, most", a.friction_use, b.friction_use);
+  row("slip of the feet per step, m", a.slip, b.slip);
   text += "iterations of the stages:";
   for (const Stage& stage : stages) {
     text += fmt::format(" {}", stage.outcome.result.iterations);

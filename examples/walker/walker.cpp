@@ -240,7 +240,7 @@ solvers::IpoptOptions ipopt_options(Aim aim, const solvers::IpoptResult* earlier
   solvers::IpoptOptions options;
   options.hessian = solvers::HessianKind::kExact;
   options.tolerance = aim == Aim::kCostOfTransport ? 1e-7 : 1e-5;
-  options.constraint_tolerance = 1e-8;
+  options.constraint_tolerance = 1e-7;
   options.acceptable_tolerance = 1e-5;
   if (earlier == nullptr) {
     options.string_options["mu_strategy"] = "adaptive";

@@ -20,6 +20,9 @@ struct Plan {
   double double_support = 0.1;  ///< share of half a gait during which both feet touch
   double clearance = 0.03;      ///< of the swinging foot in the middle of its swing, m
   double length_share = 0.25;   ///< how much shorter or longer thighs and shanks may get; 0: held
+  /// Steps at which BDF2 starts anew when a solution is simulated, as it does between the segments
+  /// of multiple shooting.
+  std::vector<int> restarts = {};
 
   /// How far half a gait gets, m.
   [[nodiscard]] double advance() const { return speed * duration; }
