@@ -8,54 +8,16 @@
 #include "hbar/adjoint/state_variables.h"
 #include "hbar/core/error.h"
 #include "hbar/core/integrator.h"
-#include "hbar/core/sparsity.h"
 
 namespace hbar {
 namespace {
 
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
-/// Coordinates that move each end effector.
-std::vector<std::vector<int>> end_effector_paths(const Model& model) {
-  std::vector<std::vector<int>> out;
-  for (const EndEffector& end_effector : model.end_effectors()) {
-    std::vector<int> path;
-    for (int node = model.node_of_link(end_effector.link); node >= 0;
-         node = model.tree().node(node).parent) {
-      const CoordinateRange range = model.tree().node(node).coordinates;
-      for (int c = range.begin; c < range.end; ++c) {
-        path.push_back(c);
-      }
-    }
-    std::sort(path.begin(), path.end());
-    out.push_back(path);
-  }
-  return out;
-}
-
-/// Per coordinate those, not above it, whose second derivative with it may be non-zero.
-std::vector<std::vector<int>> second_order_pairs(const Simulator& simulator) {
-  const Model& model = simulator.model();
-  std::vector<std::vector<int>> out = residual_pattern(model);
-  const bool all = simulator.measured_count() + model.tactile_count() > 0;
-  for (int c = 0; c < model.dof(); ++c) {
-    std::vector<int>& others = out[static_cast<std::size_t>(c)];
-    if (all) {
-      others.resize(static_cast<std::size_t>(model.dof()));
-      for (int i = 0; i < model.dof(); ++i) {
-        others[static_cast<std::size_t>(i)] = i;
-      }
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 AllAtOnce::AllAtOnce(const TrajectoryProblem& problem, const TranscriptionOptions& options)
     : Transcription(problem),
-      pairs_(second_order_pairs(problem_.simulator)),
-      paths_(end_effector_paths(problem_.simulator.model())),
       residual_(problem_.simulator),
       linearizer_(problem_.simulator),
       hessian_(problem_.simulator, head_.design_count()),
@@ -66,6 +28,7 @@ AllAtOnce::AllAtOnce(const TrajectoryProblem& problem, const TranscriptionOption
                                        simulation.steps, simulation.restarts);
   guess(options.q_guess);
   lay_out_stages();
+  lay_out_outputs();
   scale_rows();
   lay_out_jacobian();
 }
@@ -218,6 +181,9 @@ void AllAtOnce::move_to(const Eigen::VectorXd& x) {
     try {
       g_bar_ = residual_.evaluate(trajectory_).cwiseProduct(row_scale_);
       values_ = problem_.simulator.values(trajectory_);
+      if (!g_bar_.allFinite()) {
+        failure_ = "all-at-once: the residual is not finite at this point";
+      }
     } catch (const InvalidInput& error) {  // parameters that no body can have
       failure_ = error.what();
     }

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "hbar/adjoint/flat_stencil.h"
@@ -50,6 +51,13 @@ class AllAtOnce final : public Transcription {
     double start_qdot = 0.0;
   };
 
+  /// What an output's row may change with at its instant, each ascending.
+  struct OutputReads {
+    std::vector<int> q;         // coordinates
+    std::vector<int> qdot;      // coordinates whose rates are read
+    std::vector<int> controls;  // of the step that ends
+  };
+
   void guess(const Eigen::MatrixXd& q_guess);
   void lay_out_stages();
   void scale_rows();
@@ -61,7 +69,13 @@ class AllAtOnce final : public Transcription {
 
   [[nodiscard]] std::vector<Eigen::Index> columns_of(const ValuePlace& place) const override;
   void derivatives_of(const ValuePlace& place, std::vector<double>& out) override;
-  [[nodiscard]] bool depends(const ValuePlace& place, int coordinate) const;
+  void lay_out_outputs();
+  void lay_out_pairs();
+  [[nodiscard]] const std::vector<int>& pairs_of(const StageEntry& a, const StageEntry& b,
+                                                 int coordinate) const;
+  [[nodiscard]] const OutputReads& reads_of(const ValuePlace& place) const;
+  [[nodiscard]] static bool depends(const OutputReads& reads, const StageEntry& entry,
+                                    int coordinate);
   void differentiate_output(const ValuePlace& place);
 
   [[nodiscard]] HessianPlan& plan(solvers::HessianKind kind);
@@ -73,9 +87,14 @@ class AllAtOnce final : public Transcription {
   /// The step that a stage ends, or −1.
   [[nodiscard]] int step_ended_by(int stage) const;
 
-  std::vector<std::vector<StageEntry>> stages_;  // per stage: what it depends on
-  std::vector<std::vector<int>> pairs_;          // per coordinate: those it shares bodies with
-  std::vector<std::vector<int>> paths_;          // per end effector: coordinates that move it
+  std::vector<std::vector<StageEntry>> stages_;     // per stage: what it depends on
+  std::vector<std::vector<int>> pairs_;             // per coordinate: those it bends numbers with
+  std::vector<std::vector<int>> own_pairs_;         // and where neither moves by its rate
+  std::vector<OutputReads> variable_reads_;         // per end effector
+  std::vector<OutputReads> measured_reads_;         // per measured row
+  OutputReads tactile_reads_;                       // of every reading
+  std::vector<std::pair<int, int>> control_rates_;  // (control, coordinate) of measured powers
+  std::vector<std::pair<Eigen::Index, int>> gain_controls_;  // (design variable, control)
   TrajectoryResidual residual_;
   Linearizer linearizer_;
   StageHessian hessian_;

@@ -34,8 +34,12 @@ template <typename Entries, typename F>
 void for_each_pair(const Entries& entries, const F& f) {
   for (std::size_t i = 0; i < entries.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
+      const auto moves = [](const auto& entry) {
+        return entry.q != 0.0 || entry.qdot != 0.0 || entry.a != 0.0;
+      };
       const bool rates = entries[i].qdot != 0.0 && entries[j].qdot != 0.0;
-      if (entries[i].q != 0.0 || entries[j].q != 0.0 || rates) {
+      if ((entries[i].q != 0.0 && moves(entries[j])) ||
+          (entries[j].q != 0.0 && moves(entries[i])) || rates) {
         f(entries[i], entries[j]);
       }
     }
@@ -51,7 +55,7 @@ void AllAtOnce::add_stage(int stage, EntryPlan& entries) const {
       head_.control_place(head_.block_of_step(measured_step(step > 0 ? step : 0)));
   for_each_pair(runs, [&](const StageEntry& a, const StageEntry& b) {
     for (int c = 0; c < n; ++c) {
-      for (const int other : pairs_[static_cast<std::size_t>(c)]) {
+      for (const int other : pairs_of(a, b, c)) {
         if (a.place != b.place || other <= c) {
           entries.add_lower(a.place + c, b.place + other);
         }
@@ -63,19 +67,17 @@ void AllAtOnce::add_stage(int stage, EntryPlan& entries) const {
       for (Eigen::Index i = 0; i < head_.design_count(); ++i) {
         entries.add_lower(run.place + c, i);
       }
-      if (reads_controls && (run.q != 0.0 || run.qdot != 0.0)) {
-        for (Eigen::Index i = 0; i < head_.control_count(); ++i) {
-          entries.add_lower(run.place + c, control + i);
-        }
+    }
+    if (reads_controls && run.qdot != 0.0) {
+      for (const auto& [i, c] : control_rates_) {
+        entries.add_lower(run.place + c, control + i);
       }
     }
   }
   if (stage > 0 || reads_controls) {
     const int acting = stage > 0 ? trajectory_.timeline.stage(stage).step : 0;
-    for (Eigen::Index i = 0; i < head_.design_count(); ++i) {
-      for (Eigen::Index k = 0; k < head_.control_count(); ++k) {
-        entries.add_lower(head_.control_place(head_.block_of_step(acting)) + k, i);
-      }
+    for (const auto& [i, k] : gain_controls_) {
+      entries.add_lower(head_.control_place(head_.block_of_step(acting)) + k, i);
     }
   }
 }
@@ -94,7 +96,7 @@ void AllAtOnce::put_stage(int stage, EntryPlan& entries) const {
     const double by_aq = a.a * b.q;
     const double by_vv = a.qdot * b.qdot;
     for (int c = 0; c < n; ++c) {
-      for (const int other : pairs_[static_cast<std::size_t>(c)]) {
+      for (const int other : pairs_of(a, b, c)) {
         if (a.place != b.place || other <= c) {
           entries.put(by_qq * h.qq(c, other) + by_qv * h.qv(c, other) + by_vq * h.qv(other, c) +
                       by_qa * h.qa(c, other) + by_aq * h.qa(other, c) + by_vv * h.vv(c, other));
@@ -108,18 +110,16 @@ void AllAtOnce::put_stage(int stage, EntryPlan& entries) const {
         entries.put(run.q * h.dq(i, c) + run.qdot * h.dv(i, c) + run.a * h.da(i, c) +
                     run.start_q * h.dsq(i, c) + run.start_qdot * h.dsv(i, c));
       }
-      if (reads_controls && (run.q != 0.0 || run.qdot != 0.0)) {
-        for (Eigen::Index i = 0; i < head_.control_count(); ++i) {
-          entries.put(run.q * h.uq(i, c) + run.qdot * h.uv(i, c));
-        }
+    }
+    if (reads_controls && run.qdot != 0.0) {
+      for (const auto& [i, c] : control_rates_) {
+        entries.put(run.qdot * h.uv(i, c));
       }
     }
   }
   if (stage > 0 || reads_controls) {
-    for (Eigen::Index i = 0; i < head_.design_count(); ++i) {
-      for (Eigen::Index k = 0; k < head_.control_count(); ++k) {
-        entries.put(h.du(i, k));
-      }
+    for (const auto& [i, k] : gain_controls_) {
+      entries.put(h.du(i, k));
     }
   }
 }
