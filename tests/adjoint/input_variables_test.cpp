@@ -28,10 +28,11 @@ TrajectoryProblem held_problem(bool free_state) {
                         .map = std::make_shared<InertiaChart>(set),
                         .objective = {},
                         .constraints = {},
-                        .controls = {.hold = 3},
+                        .controls = {},
                         .q0 = Eigen::Vector2d(0.1, 0.2),
                         .qdot0 = Eigen::Vector2d(0.3, 0.4),
                         .design_weight = 0.7};
+  out.controls.hold = 3;
   if (free_state) {
     out.initial = InitialStateBounds{};
     out.initial->q_lower = Eigen::Vector2d(-1.0, -2.0);
