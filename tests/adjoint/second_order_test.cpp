@@ -17,7 +17,7 @@ using testing::Random;
 using testing::unflatten;
 
 /// A direction that moves every input, each about as much as its own size allows.
-Eigen::VectorXd some_direction(const Inputs& inputs, std::uint64_t seed) {
+Eigen::VectorXd some_direction(const Inputs& inputs, unsigned seed) {
   Random random(seed);
   const Eigen::VectorXd x = flatten(inputs);
   return random.vector(x.size()).cwiseProduct(x.cwiseAbs().cwiseMin(1.0).cwiseMax(0.02));
