@@ -1,5 +1,6 @@
 #include "finger.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -16,6 +17,8 @@ constexpr std::array<std::pair<const char*, const char*>, 3> kNames = {
 std::string joint_x(const Phalanx& phalanx) {
   return "joint." + phalanx.next_joint + ".translation.x";
 }
+constexpr const char* kTipMass = "body.tip.mass";
+
 std::string body_parameter(const Phalanx& phalanx, const char* what) {
   return "body." + phalanx.body + "." + what;
 }
@@ -41,7 +44,7 @@ std::array<Phalanx, 3> phalanges(const Model& model) {
   return out;
 }
 
-ParameterSet finger_parameters(const Model& model) {
+ParameterSet finger_parameters(const Model& model, bool payload) {
   std::vector<std::string> names;
   for (const Phalanx& phalanx : phalanges(model)) {
     names.push_back(joint_x(phalanx));
@@ -49,10 +52,14 @@ ParameterSet finger_parameters(const Model& model) {
     names.push_back(body_parameter(phalanx, "mass"));
     names.push_back(body_parameter(phalanx, "inertia"));
   }
+  if (payload) {
+    names.emplace_back(kTipMass);
+  }
   return ParameterSet::named(model, names);
 }
 
-FingerMap::FingerMap(const std::array<Phalanx, 3>& phalanges, const ParameterSet& set)
+FingerMap::FingerMap(const std::array<Phalanx, 3>& phalanges, const ParameterSet& set,
+                     double payload)
     : phalanges_(phalanges), count_(set.size()) {
   variables_.start.resize(6);
   variables_.scale.resize(6);
@@ -74,6 +81,26 @@ FingerMap::FingerMap(const std::array<Phalanx, 3>& phalanges, const ParameterSet
   variables_.units.assign(6, "m");
   variables_.lower = 0.5 * variables_.start;
   variables_.upper = 1.5 * variables_.start;
+  add_payload(set, payload);
+}
+
+void FingerMap::add_payload(const ParameterSet& set, double payload) {
+  const std::vector<Parameter>& all = set.parameters();
+  const auto tip =
+      std::find_if(all.begin(), all.end(), [](const Parameter& p) { return p.name == kTipMass; });
+  if (tip == all.end()) {
+    return;
+  }
+  tip_ = static_cast<int>(tip - all.begin());
+  tip_mass_ = tip->nominal;
+  for (Eigen::VectorXd* numbers : {&variables_.start, &variables_.lower, &variables_.upper}) {
+    numbers->conservativeResize(7);
+    (*numbers)[6] = payload;
+  }
+  variables_.scale.conservativeResize(7);
+  variables_.scale[6] = tip_mass_;
+  variables_.names.emplace_back("payload");
+  variables_.units.emplace_back("kg");
 }
 
 Eigen::VectorXd FingerMap::parameters(const Eigen::VectorXd& d) const {
@@ -90,11 +117,17 @@ Eigen::VectorXd FingerMap::parameters(const Eigen::VectorXd& d) const {
     p[place.mass] = m;
     p.segment<3>(place.inertia) << m * w * w / 6.0, across, across;
   }
+  if (tip_ >= 0) {
+    p[tip_] = tip_mass_ + d[6];
+  }
   return p;
 }
 
 Eigen::MatrixXd FingerMap::jacobian(const Eigen::VectorXd& d) const {
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(count_, 6);
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(count_, d.size());
+  if (tip_ >= 0) {
+    J(tip_, 6) = 1.0;
+  }
   for (std::size_t i = 0; i < 3; ++i) {
     const Places& place = places_[i];
     const auto by_l = static_cast<Eigen::Index>(i);
@@ -118,7 +151,7 @@ Eigen::MatrixXd FingerMap::jacobian(const Eigen::VectorXd& d) const {
 }
 
 Eigen::MatrixXd FingerMap::hessian(const Eigen::VectorXd& d, const Eigen::VectorXd& y) const {
-  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(6, 6);
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(d.size(), d.size());
   for (std::size_t i = 0; i < 3; ++i) {
     const Places& place = places_[i];
     const auto by_l = static_cast<Eigen::Index>(i);

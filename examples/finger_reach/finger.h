@@ -25,12 +25,16 @@ struct Phalanx {
 [[nodiscard]] std::array<Phalanx, 3> phalanges(const Model& model);
 
 /// What a phalanx's size decides: where the next joint and its own body sit, its mass and moments.
-[[nodiscard]] ParameterSet finger_parameters(const Model& model);
+///
+/// @param payload  the mass at the tip is among them
+[[nodiscard]] ParameterSet finger_parameters(const Model& model, bool payload = false);
 
-/// Lengths and widths of the phalanges onto finger_parameters: d = (3 lengths, 3 widths).
+/// Lengths and widths of the phalanges onto finger_parameters: d = (3 lengths, 3 widths), and if
+/// the tip's mass is in the set, a payload at the tip that is given (its bounds leave it no room).
 class FingerMap final : public DesignMap {
  public:
-  FingerMap(const std::array<Phalanx, 3>& phalanges, const ParameterSet& set);
+  /// @param payload  kg
+  FingerMap(const std::array<Phalanx, 3>& phalanges, const ParameterSet& set, double payload = 0.0);
 
   [[nodiscard]] const DesignVariables& variables() const override { return variables_; }
   [[nodiscard]] Eigen::Index parameter_count() const override { return count_; }
@@ -48,8 +52,12 @@ class FingerMap final : public DesignMap {
     int inertia = 0;  ///< the first of three
   };
 
+  void add_payload(const ParameterSet& set, double payload);
+
   std::array<Phalanx, 3> phalanges_;
   std::array<Places, 3> places_;
+  int tip_ = -1;  // its mass in p
+  double tip_mass_ = 0.0;
   Eigen::Index count_ = 0;
   DesignVariables variables_;
 };

@@ -4,18 +4,19 @@
 //   cmake --build build/release --target finger_reach
 //   build/release/examples/finger_reach/finger_reach
 //
-// prints a line per iteration of Ipopt and a summary, and writes result.json, trajectory.csv and
-// iterations.csv into results/finger_reach. doc/finger_reach.md tells what is solved and found.
+// prints a line per iteration of Ipopt and a summary, and writes result.json, solution.csv,
+// trajectory.csv and iterations.csv into results/finger_reach. doc/finger_reach.md tells what is
+// solved and found.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <filesystem>
 
-#include "examples/common/process.h"
 #include "examples/common/progress.h"
 #include "hbar/scene/atomic_file.h"
-#include "hbar/study/trajectory_csv.h"
 #include "report.h"
+#include "studies.h"
 
 namespace hbar::finger_reach {
 namespace {
@@ -24,69 +25,102 @@ using example::ExitCode;
 using example::print;
 
 struct Arguments {
-  std::filesystem::path out = "results/finger_reach";
+  example::OptimiseArguments optimise;
   std::filesystem::path scene = HBAR_SOURCE_DIR "/examples/scenes/finger.xml";
-  int max_iterations = 200;
   int steps = 600;
+  bool compare = false;
+  bool pareto = false;
+  bool sensitivity = false;
 };
 
-ExitCode run(const Arguments& arguments) {
-  // 1. The problem.
-  example::make_folder(arguments.out);
-  Reach reach = make_reach(arguments.scene, arguments.steps);
-  Transcription& problem = *reach.problem;
-  Outcome outcome;
-  outcome.start = problem.variables().start;
-  outcome.start_objective = problem.objective(outcome.start);
-  print(fmt::format("finger_reach: {} variables, {} constraints, {} steps of {:g} s\n{}\n",
-                    outcome.start.size(), problem.constraint_limits().lower.size(), arguments.steps,
-                    kDuration / arguments.steps, example::progress_heading()));
+const std::filesystem::path& folder(const Arguments& arguments) { return arguments.optimise.out; }
 
-  // 2. Ipopt.
-  example::Progress progress;
-  solvers::IpoptOptions options = ipopt_options(arguments.max_iterations);
-  options.stop = &example::stop_flag();
-  options.on_iteration = [&](const solvers::IterationInfo& info) {
-    progress.show(info);
-    return true;
-  };
-  outcome.result = solvers::solve_with_ipopt(problem, options);
-  progress.end();
+ExitCode compare(const Arguments& arguments) {
+  const std::vector<Way> ways =
+      solve_every_way(arguments.scene, arguments.steps, arguments.optimise);
+  print(ways_table(ways));
+  return example::stop_flag() ? ExitCode::kInterrupted : ExitCode::kOk;
+}
+
+ExitCode pareto(const Arguments& arguments) {
+  const std::vector<FrontPoint> front =
+      front_of_mass(arguments.scene, arguments.steps, arguments.optimise,
+                    {1.0, 0.8, 0.6, 0.4, 0.3, 0.2, 0.15, 0.1, 0.05});
+  scene::write_file_atomically(folder(arguments) / "pareto.csv", front_csv(front));
+  print(fmt::format("{}written: {}/pareto.csv\n", front_table(front), folder(arguments).string()));
+  return example::stop_flag() ? ExitCode::kInterrupted : ExitCode::kOk;
+}
+
+ExitCode run(const Arguments& arguments) {
+  example::make_folder(folder(arguments));
+  if (arguments.compare) {
+    return compare(arguments);
+  }
+  if (arguments.pareto) {
+    return pareto(arguments);
+  }
+  // 1. The problem.
+  ReachOptions options{.steps = arguments.steps,
+                       .transcription = example::transcription_options(arguments.optimise),
+                       .payload = {}};
+  if (arguments.sensitivity) {
+    options.payload = 0.0;
+  }
+  if (options.transcription.formulation == Formulation::kMultipleShooting) {
+    options.segments = arguments.optimise.segments;
+  }
+  const Reach reach = make_reach(arguments.scene, options);
+  Transcription& program = *reach.problem;
+  Outcome outcome;
+  outcome.start = program.variables().start;
+  outcome.start_objective = program.objective(outcome.start);
+  print(fmt::format("finger_reach: {} steps of {:g} s\n", arguments.steps,
+                    kDuration / arguments.steps));
+
+  // 2. Ipopt, and its files.
+  solvers::IpoptOptions ipopt = ipopt_options();
+  if (arguments.sensitivity) {  // whose equations hold at an optimum alone
+    ipopt.tolerance = 1e-9;
+    ipopt.acceptable_tolerance = 1e-9;
+  }
+  outcome.optimised = example::optimise(program, arguments.optimise, ipopt);
 
   // 3. What came out, converged or not.
-  outcome.iterations = progress.iterations();
-  outcome.times = problem.times();
-  outcome.values = problem.trajectory_values(outcome.result.x);
-  scene::write_file_atomically(arguments.out / "result.json", result_json(reach, outcome));
-  scene::write_file_atomically(
-      arguments.out / "trajectory.csv",
-      study::trajectory_csv(study::trajectory_names(problem.problem().simulator), outcome.values));
-  scene::write_file_atomically(arguments.out / "iterations.csv",
-                               example::iterations_csv(outcome.iterations));
-  print(summary(reach, outcome));
-  print(fmt::format("written:     {}/result.json, trajectory.csv, iterations.csv\n",
-                    arguments.out.string()));
-  if (outcome.result.status == solvers::IpoptStatus::kInterrupted) {
-    return ExitCode::kInterrupted;
+  const solvers::IpoptResult& result = outcome.optimised.result;
+  outcome.values = program.trajectory_values(result.x);
+  scene::write_file_atomically(folder(arguments) / "result.json", result_json(reach, outcome));
+  print('\n' + summary(reach, outcome));
+  print(fmt::format("written:     {}/result.json\n", folder(arguments).string()));
+  if (arguments.sensitivity && result.converged()) {
+    print(sensitivity_table(reach, result));
   }
-  return outcome.result.converged() ? ExitCode::kOk : ExitCode::kNotConverged;
+  return outcome.optimised.code;
 }
 
 ExitCode run_line(int argc, char** argv) {
   Arguments arguments;
+  arguments.optimise.out = "results/finger_reach";
+  arguments.optimise.formulation = "shooting";
+  arguments.optimise.hessian = "limited-memory";
+  arguments.optimise.max_iterations = 200;
+  arguments.optimise.segments = 10;
   CLI::App app("Co-design of a finger that reaches four targets with the least effort.",
                "finger_reach");
-  app.add_option("--out", arguments.out, "Folder for the results.")->capture_default_str();
+  example::add_options(app, arguments.optimise);
   app.add_option("--scene", arguments.scene, "The finger.");
-  app.add_option("--max-iterations", arguments.max_iterations, "Of Ipopt.")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
-  app.add_option("--steps", arguments.steps, "Of the 3 s, a multiple of 60.")
-      ->check(CLI::Range(60, 60000))
+  app.add_option("--steps", arguments.steps, "Of the 3 s, a multiple of 60; or 12, 24, 36, 48.")
       ->check([](const std::string& text) {
-        return std::stol(text) % 60 == 0 ? "" : "must be a multiple of 60";
+        const long steps = std::strtol(text.c_str(), nullptr, 10);
+        return steps >= 12 && steps <= 60000 && steps % (steps < 60 ? 12 : 60) == 0
+                   ? ""
+                   : "must be a multiple of 60 up to 60000, or 12, 24, 36 or 48";
       })
       ->capture_default_str();
+  CLI::Option* compare = app.add_flag("--compare", arguments.compare,
+                                      "Solve by every formulation with every Hessian.");
+  app.add_flag("--pareto", arguments.pareto, "The front of effort and mass.")->excludes(compare);
+  app.add_flag("--sensitivity", arguments.sensitivity,
+               "How the optimum answers the tip's mass and the mass limit.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -53,18 +53,30 @@ std::vector<std::string> weighed_bodies(const std::array<Phalanx, 3>& phalanges)
   return names;
 }
 
+/// weight · mass of the phalanges in kg.
+TermPointer mass_term(const ParameterSet& set, const std::array<Phalanx, 3>& phalanges,
+                      double weight) {
+  std::vector<ValuePlace> places;
+  for (const std::string& name : weighed_bodies(phalanges)) {
+    places.push_back({ValueField::kP, 0, set.find(name)});
+  }
+  return weighted_numbers("mass", std::move(places), Eigen::Vector3d::Constant(weight));
+}
+
 }  // namespace
 
-Reach make_reach(const std::filesystem::path& scene_file, int steps) {
-  if (steps < 60 || steps % 60 != 0) {
-    throw InvalidInput(concat("finger: ", steps, " steps; expected a multiple of 60"));
+Reach make_reach(const std::filesystem::path& scene_file, const ReachOptions& options) {
+  const int steps = options.steps;
+  if (steps < 12 || steps % (steps < 60 ? 12 : 60) != 0) {
+    throw InvalidInput(
+        concat("finger: ", steps, " steps; expected a multiple of 60, or 12, 24, 36 or 48"));
   }
   const scene::Scene scene = scene::read_scene(scene_file);
   const Model model = scene::build_model(scene);
   require_finger(model);
   const std::string tip = model.end_effectors().front().name;
   const double tip_mass = model.link(model.end_effectors().front().link).body.mass;
-  ParameterSet set = finger_parameters(model);
+  ParameterSet set = finger_parameters(model, options.payload.has_value());
 
   Reach out{phalanges(model), {}, nullptr};
   out.targets = {{steps / 4, {0.185, 0.125, -0.100}},
@@ -76,7 +88,8 @@ Reach make_reach(const std::filesystem::path& scene_file, int steps) {
     constraints.push_back(variable_at_step(model, tip, target.step, target.position, kHalfWidth));
   }
   std::vector<int> sampled;
-  for (int k = steps / kLimitSamples; k <= steps; k += steps / kLimitSamples) {
+  const int stride = std::max(1, steps / kLimitSamples);
+  for (int k = stride; k <= steps; k += stride) {
     sampled.push_back(k);
   }
   constraints.push_back(joint_limits(model, sampled, kLimitMargin));
@@ -86,23 +99,29 @@ Reach make_reach(const std::filesystem::path& scene_file, int steps) {
   constraints.push_back(slenderness(out.phalanges, set, kRatio));
 
   HeldControls controls;
-  controls.hold = steps / kBlocks;
+  controls.hold = std::max(1, steps / kBlocks);
   controls.start = holding_controls(model, kStart);
   controls.lower = Eigen::VectorXd::Constant(4, -1.0);
   controls.upper = Eigen::VectorXd::Constant(4, 1.0);
-  auto map = std::make_shared<FingerMap>(out.phalanges, set);
+  auto map = std::make_shared<FingerMap>(out.phalanges, set, options.payload.value_or(0.0));
   SimulationOptions simulation;
   simulation.integrator = "bdf2";
   simulation.h = kDuration / steps;
   simulation.steps = steps;
+  simulation.restarts = segment_starts(steps, options.segments);
+  Objective objective(effort(options.effort_weight));
+  if (options.mass_weight != 0.0) {
+    objective.add(mass_term(set, out.phalanges, 10.0 * options.mass_weight));
+  }
   out.problem =
       transcribe(TrajectoryProblem{.simulator = Simulator(model, std::move(set), simulation),
                                    .map = std::move(map),
-                                   .objective = Objective(effort()),
+                                   .objective = std::move(objective),
                                    .constraints = std::move(constraints),
                                    .controls = std::move(controls),
                                    .q0 = kStart,
-                                   .qdot0 = {}});
+                                   .qdot0 = {}},
+                 options.transcription);
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "finger.h"
 #include "hbar/adjoint/transcription.h"
@@ -30,15 +31,28 @@ constexpr int kBlocks = 30;            ///< of constant torque
 constexpr int kLimitSamples = 60;      ///< times at which joint limits are looked at
 constexpr double kLimitMargin = 0.01;  ///< for what happens in between, rad
 
+/// What is to be solved, and how it becomes a nonlinear program.
+struct ReachOptions {
+  int steps = 600;  ///< of the 3 s, a multiple of 60; coarse ones for derivatives: 12, 24, 36, 48
+  TranscriptionOptions transcription = {};
+  /// In each of them BDF2 starts anew, whatever the formulation; multiple shooting has no other
+  /// way.
+  int segments = 1;
+  double effort_weight = 1.0;  ///< of ½ ∫ ‖u‖² dt
+  double mass_weight = 0.0;    ///< of the phalanges' mass, per 100 g
+  /// Set: kg added to the tip, as a variable whose bounds leave it no room. It does not count for
+  /// the mass limit.
+  std::optional<double> payload = {};
+};
+
 /// Sets up the problem: least effort ½ ∫ ‖u‖² dt, u being shares of the motors' greatest torques.
 ///
 /// @param scene  examples/scenes/finger.xml or one like it
-/// @param steps  of the 3 s, a multiple of 60
 /// @throws IoError, InvalidInput  as read_scene, or if the scene is no such finger
-[[nodiscard]] Reach make_reach(const std::filesystem::path& scene, int steps);
+[[nodiscard]] Reach make_reach(const std::filesystem::path& scene, const ReachOptions& options);
 
-/// How Ipopt is asked to solve it.
-[[nodiscard]] solvers::IpoptOptions ipopt_options(int max_iterations);
+/// How Ipopt is asked to solve it: to 1e-6.
+[[nodiscard]] solvers::IpoptOptions ipopt_options(int max_iterations = 200);
 
 /// Distance of the tip to each target, m.                                             [targets]
 [[nodiscard]] Eigen::VectorXd tip_errors(const Reach& reach, const TrajectoryValues& values);

@@ -29,7 +29,7 @@ std::vector<Violated> violations(const Reach& reach, const Outcome& outcome, dou
   const solvers::NlpConstraints& limits = reach.problem->constraint_limits();
   std::vector<Violated> out;
   for (Eigen::Index i = 0; i < limits.lower.size(); ++i) {
-    const double c = outcome.result.c[i];
+    const double c = outcome.optimised.result.c[i];
     const double amount = std::max(limits.lower[i] - c, c - limits.upper[i]);
     if (!(amount <= tolerance)) {
       out.push_back({limits.names[static_cast<std::size_t>(i)], amount});
@@ -40,9 +40,10 @@ std::vector<Violated> violations(const Reach& reach, const Outcome& outcome, dou
   return out;
 }
 
-double solver_time(const Outcome& outcome) {
-  const TranscriptionTimes& times = outcome.times;
-  return outcome.result.elapsed - times.simulation - times.gradient - times.jacobian;
+double solver_time(const example::Optimised& optimised) {
+  const TranscriptionTimes& times = optimised.times;
+  return optimised.result.elapsed - times.simulation - times.gradient - times.jacobian -
+         times.hessian;
 }
 
 void add(std::string& text, const std::string& line) { text += line + '\n'; }
@@ -51,12 +52,13 @@ void add_violations(std::string& text, const Reach& reach, const Outcome& outcom
   constexpr double kTolerance = 1e-6;
   const std::vector<Violated> violated = violations(reach, outcome, kTolerance);
   if (violated.empty()) {
-    add(text, fmt::format("constraints: all {} met, largest violation {:.1e}",
-                          outcome.result.c.size(), outcome.result.violation.amount));
+    add(text,
+        fmt::format("constraints: all {} met, largest violation {:.1e}",
+                    outcome.optimised.result.c.size(), outcome.optimised.result.violation.amount));
     return;
   }
-  add(text,
-      fmt::format("constraints: {} of {} violated", violated.size(), outcome.result.c.size()));
+  add(text, fmt::format("constraints: {} of {} violated", violated.size(),
+                        outcome.optimised.result.c.size()));
   for (std::size_t i = 0; i < std::min<std::size_t>(violated.size(), 10); ++i) {
     add(text, fmt::format("  {:<28} by {:.3e}", violated[i].name, violated[i].amount));
   }
@@ -78,16 +80,15 @@ double finger_mass(const Reach& reach, const Eigen::VectorXd& x) {
 }
 
 std::string summary(const Reach& reach, const Outcome& outcome) {
-  const solvers::IpoptResult& result = outcome.result;
+  const solvers::IpoptResult& result = outcome.optimised.result;
   const DesignVariables& design = reach.problem->problem().map->variables();
   const double length = finger_length(reach, result.x);
   std::string text;
-  add(text, fmt::format("\n{}", result.message));
   add(text, fmt::format("effort:      {:.6f} before, {:.6f} after {} iterations",
                         outcome.start_objective, result.objective, result.iterations));
   add_violations(text, reach, outcome);
   add(text, fmt::format("{:<20} {:>10} {:>10}", "design", "before", "after"));
-  for (Eigen::Index i = 0; i < design.size(); ++i) {
+  for (Eigen::Index i = 0; i < 6; ++i) {
     add(text,
         fmt::format("  {:<18} {:>7.2f} mm {:>7.2f} mm", design.names[static_cast<std::size_t>(i)],
                     1e3 * outcome.start[i], 1e3 * result.x[i]));
@@ -101,16 +102,11 @@ std::string summary(const Reach& reach, const Outcome& outcome) {
                           i + 1, reach.targets[static_cast<std::size_t>(i)].step * outcome.values.h,
                           1e3 * errors[i], 100.0 * errors[i] / length));
   }
-  const TranscriptionTimes& times = outcome.times;
-  add(text, fmt::format("time:        {:.2f} s: simulation {:.2f} s ({}), gradient {:.2f} s ({}), "
-                        "Jacobian {:.2f} s ({}), Ipopt {:.2f} s",
-                        result.elapsed, times.simulation, times.simulations, times.gradient,
-                        times.gradients, times.jacobian, times.jacobians, solver_time(outcome)));
   return text;
 }
 
 std::string result_json(const Reach& reach, const Outcome& outcome) {
-  const solvers::IpoptResult& result = outcome.result;
+  const solvers::IpoptResult& result = outcome.optimised.result;
   const DesignVariables& design = reach.problem->problem().map->variables();
   const SimulationOptions& simulation = reach.problem->problem().simulator.options();
   Json out = {{"status", solvers::to_string(result.status)},
@@ -149,15 +145,13 @@ std::string result_json(const Reach& reach, const Outcome& outcome) {
   }
   out["controls"] = Json::array();
   const Eigen::Index first = design.size();
-  for (int b = 0; b < reach.problem->block_count(); ++b) {
+  for (int b = 0; b < reach.problem->input_variables().block_count(); ++b) {
     out["controls"].push_back(list(result.x.segment(first + 4 * b, 4)));
   }
-  const TranscriptionTimes& times = outcome.times;
-  out["seconds"] = {{"total", result.elapsed},
-                    {"simulation", times.simulation},
-                    {"gradient", times.gradient},
-                    {"jacobian", times.jacobian},
-                    {"ipopt", solver_time(outcome)}};
+  const TranscriptionTimes& times = outcome.optimised.times;
+  out["seconds"] = {{"total", result.elapsed},    {"simulation", times.simulation},
+                    {"gradient", times.gradient}, {"jacobian", times.jacobian},
+                    {"hessian", times.hessian},   {"ipopt", solver_time(outcome.optimised)}};
   return out.dump(1) + '\n';
 }
 

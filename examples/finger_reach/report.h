@@ -3,19 +3,17 @@
 #include <string>
 #include <vector>
 
-#include "hbar/solvers/ipopt.h"
+#include "examples/common/optimise.h"
 #include "reach.h"
 
 namespace hbar::finger_reach {
 
 /// What a run leaves behind.
 struct Outcome {
-  Eigen::VectorXd start;                           ///< x before
-  double start_objective = 0.0;                    ///< effort before
-  solvers::IpoptResult result;                     ///< x after
-  TrajectoryValues values;                         ///< of x after
-  std::vector<solvers::IterationInfo> iterations;  ///< one per iterate, the start first
-  TranscriptionTimes times;                        ///< without Ipopt's own
+  Eigen::VectorXd start;         ///< x before
+  double start_objective = 0.0;  ///< effort before
+  example::Optimised optimised;  ///< x after, the iterates and where the time went
+  TrajectoryValues values;       ///< of x after
 };
 
 /// Length of the finger, from the knuckle to the tip, m.

@@ -7,11 +7,14 @@
 #include "examples/common/progress.h"
 #include "examples/finger_reach/reach.h"
 #include "examples/finger_reach/report.h"
+#include "examples/finger_reach/studies.h"
 #include "hbar/adjoint/check_terms.h"
 #include "hbar/core/error.h"
 #include "hbar/scene/build_model.h"
 #include "hbar/scene/read_xml.h"
 #include "hbar/solvers/gradient_check.h"
+#include "hbar/solvers/ipopt_derivatives.h"
+#include "hbar/solvers/sensitivity.h"
 #include "hbar/study/trajectory_csv.h"
 
 namespace hbar::finger_reach {
@@ -42,6 +45,18 @@ TEST(FingerReach, HasAMapWithTheRightJacobian) {
   EXPECT_NEAR(check.hessian_slope, 2.0, 0.1);
 }
 
+TEST(FingerReach, TakesATipThatIsGiven) {
+  const Model model = scene::build_model(scene::read_scene(kScene));
+  const ParameterSet set = finger_parameters(model, true);
+  const FingerMap map(phalanges(model), set);
+  ASSERT_EQ(map.variables().size(), 7);
+  EXPECT_EQ(map.variables().lower[6], map.variables().upper[6]);
+  EXPECT_LT((map.parameters(map.variables().start) - set.nominal()).norm(), 1e-15);
+  const DesignMapCheck check = check_design_map(map, map.variables().start);
+  EXPECT_LT(check.gap, 1e-6) << check.gap_name;
+  EXPECT_LT(check.hessian_gap, 1e-6) << check.hessian_gap_name;
+}
+
 TEST(FingerReach, HasASlendernessWithExactPartials) {
   const Model model = scene::build_model(scene::read_scene(kScene));
   const ParameterSet set = finger_parameters(model);
@@ -60,7 +75,7 @@ TEST(FingerReach, HasASlendernessWithExactPartials) {
 }
 
 TEST(FingerReach, HasRightGradientsAndJacobians) {
-  const Reach reach = make_reach(kScene, kSteps);
+  const Reach reach = make_reach(kScene, {.steps = kSteps});
   solvers::GradientCheckOptions options;
   options.coordinates = false;
   const solvers::GradientCheck check =
@@ -70,25 +85,26 @@ TEST(FingerReach, HasRightGradientsAndJacobians) {
 }
 
 TEST(FingerReach, ReachesItsTargetsWithTheLeastEffort) {
-  const Reach reach = make_reach(kScene, kSteps);
+  const Reach reach = make_reach(kScene, {.steps = kSteps});
   Transcription& problem = *reach.problem;
   Outcome outcome;
   outcome.start = problem.variables().start;
   outcome.start_objective = problem.objective(outcome.start);
   solvers::IpoptOptions options = ipopt_options(150);
   options.on_iteration = [&](const solvers::IterationInfo& info) {
-    outcome.iterations.push_back(info);
+    outcome.optimised.iterations.push_back(info);
     return true;
   };
-  outcome.result = solvers::solve_with_ipopt(problem, options);
-  outcome.times = problem.times();
-  outcome.values = problem.trajectory_values(outcome.result.x);
-  EXPECT_TRUE(outcome.result.converged()) << outcome.result.message;
-  EXPECT_LT(outcome.result.iterations, 100);
-  EXPECT_LE(outcome.result.violation.amount, 1e-6) << outcome.result.violation.name;
+  outcome.optimised.result = solvers::solve_with_ipopt(problem, options);
+  outcome.optimised.times = problem.times();
+  outcome.values = problem.trajectory_values(outcome.optimised.result.x);
+  EXPECT_TRUE(outcome.optimised.result.converged()) << outcome.optimised.result.message;
+  EXPECT_LT(outcome.optimised.result.iterations, 100);
+  EXPECT_LE(outcome.optimised.result.violation.amount, 1e-6)
+      << outcome.optimised.result.violation.name;
   EXPECT_LT(tip_errors(reach, outcome.values).maxCoeff(),
-            0.01 * finger_length(reach, outcome.result.x));
-  EXPECT_LT(outcome.result.objective, outcome.start_objective);
+            0.01 * finger_length(reach, outcome.optimised.result.x));
+  EXPECT_LT(outcome.optimised.result.objective, outcome.start_objective);
   EXPECT_LE(outcome.values.u.cwiseAbs().maxCoeff(), 1.0 + 1e-6);
   const Model& model = problem.problem().simulator.model();
   for (int i = 0; i < 4; ++i) {  // at every step, between the samples too
@@ -103,15 +119,72 @@ TEST(FingerReach, ReachesItsTargetsWithTheLeastEffort) {
   const std::string csv =
       study::trajectory_csv(study::trajectory_names(problem.problem().simulator), outcome.values);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), kSteps + 2);
-  const std::string rows = example::iterations_csv(outcome.iterations);
-  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), outcome.result.iterations + 2);
+  const std::string rows = example::iterations_csv(outcome.optimised.iterations);
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), outcome.optimised.result.iterations + 2);
+}
+
+/// All-at-once with the exact Hessian finds what shooting with L-BFGS finds.
+TEST(FingerReach, HasTheSameOptimumAllAtOnce) {
+  std::vector<Eigen::VectorXd> found;
+  for (const auto& [formulation, hessian] :
+       {std::pair{Formulation::kShooting, solvers::HessianKind::kLimitedMemory},
+        std::pair{Formulation::kAllAtOnce, solvers::HessianKind::kExact}}) {
+    const Reach reach =
+        make_reach(kScene, {.steps = kSteps, .transcription = {.formulation = formulation}});
+    solvers::IpoptOptions options = ipopt_options();
+    options.tolerance = 1e-8;
+    options.hessian = hessian;
+    const solvers::IpoptResult result = solvers::solve_with_ipopt(*reach.problem, options);
+    ASSERT_TRUE(result.converged()) << name_of(formulation) << ": " << result.message;
+    found.emplace_back(result.x.head(reach.problem->input_variables().size()));
+  }
+  EXPECT_LT((found[1] - found[0]).head<6>().lpNorm<Eigen::Infinity>(), 1e-6);
+  EXPECT_LT((found[1] - found[0]).lpNorm<Eigen::Infinity>(), 1e-4);
+}
+
+TEST(FingerReach, PassesIpoptsDerivativeChecker) {
+  const Reach reach =
+      make_reach(kScene, {.steps = 12, .transcription = {.formulation = Formulation::kAllAtOnce}});
+  const solvers::IpoptDerivativeTest test =
+      solvers::test_derivatives_with_ipopt(*reach.problem, solvers::HessianKind::kExact);
+  EXPECT_TRUE(test.passed()) << test.text;
+}
+
+/// The answer to a payload is the slope between the optima of a finger with more and with less.
+TEST(FingerReach, AnswersAPayloadAsItsSensitivitySays) {
+  const auto reach_of = [](double payload) {
+    return make_reach(kScene, {.steps = kSteps,
+                               .transcription = {.formulation = Formulation::kAllAtOnce},
+                               .payload = payload});
+  };
+  const auto solve = [](const Reach& reach) {
+    solvers::IpoptOptions options = ipopt_options();
+    options.tolerance = 1e-9;
+    options.hessian = solvers::HessianKind::kExact;
+    return solvers::solve_with_ipopt(*reach.problem, options);
+  };
+  const Reach reach = reach_of(0.0);
+  const solvers::IpoptResult optimum = solve(reach);
+  ASSERT_TRUE(optimum.converged()) << optimum.message;
+  const solvers::Sensitivity answer =
+      solvers::sensitivity_of_optimum(*reach.problem, optimum.point(), {6});
+  constexpr double kPayload = 1e-4;
+  const solvers::IpoptResult more = solve(reach_of(kPayload));
+  const solvers::IpoptResult less = solve(reach_of(-kPayload));
+  ASSERT_TRUE(more.converged() && less.converged());
+  const double slope = (more.objective - less.objective) / (2.0 * kPayload);
+  EXPECT_GT(slope, 0.0);
+  EXPECT_NEAR(answer.df_dtheta[0] / slope, 1.0, 1e-3);
+  const Eigen::VectorXd moved = (more.x - less.x).head<6>() / (2.0 * kPayload);
+  EXPECT_LT((answer.dx_dtheta.col(0).head<6>() - moved).norm(), 1e-2 * moved.norm());
+  EXPECT_NE(sensitivity_table(reach, optimum).find("payload"), std::string::npos);
 }
 
 TEST(FingerReach, RefusesAnotherScene) {
-  EXPECT_THROW(static_cast<void>(make_reach(kScene, 61)), InvalidInput);
-  EXPECT_THROW(
-      static_cast<void>(make_reach(HBAR_SOURCE_DIR "/examples/scenes/pendulum.xml", kSteps)),
-      InvalidInput);
+  EXPECT_THROW(static_cast<void>(make_reach(kScene, {.steps = 61})), InvalidInput);
+  EXPECT_THROW(static_cast<void>(
+                   make_reach(HBAR_SOURCE_DIR "/examples/scenes/pendulum.xml", {.steps = kSteps})),
+               InvalidInput);
 }
 
 }  // namespace

@@ -51,6 +51,46 @@ TEST_F(FingerReachProgram, ShowsItsProgressAndWritesWhatItFound) {
   EXPECT_TRUE(err_.empty()) << err_;
 }
 
+TEST_F(FingerReachProgram, SolvesAllAtOnceAndResumes) {
+  ASSERT_EQ(
+      run({"--steps", "60", "--formulation", "all-at-once", "--hessian", "exact", "--sensitivity"}),
+      0)
+      << err_;
+  EXPECT_NE(out_.find("effort by a payload: +"), std::string::npos) << out_;
+  const double effort = result()["objective"]["after"].get<double>();
+  ASSERT_EQ(run({"--steps", "60", "--formulation", "all-at-once", "--hessian", "exact",
+                 "--sensitivity", "--resume", (results() / "solution.csv").string()}),
+            0)
+      << err_;
+  EXPECT_LE(result()["iterations"].get<int>(), 5);
+  EXPECT_NEAR(result()["objective"]["after"].get<double>(), effort, 1e-6);
+}
+
+TEST_F(FingerReachProgram, WalksAlongTheFrontOfEffortAndMass) {
+  ASSERT_EQ(
+      run({"--steps", "60", "--formulation", "all-at-once", "--hessian", "exact", "--pareto"}), 0)
+      << err_;
+  std::istringstream table(read_file(results() / "pareto.csv"));
+  std::string line;
+  std::getline(table, line);
+  double last_effort = 0.0;
+  double last_mass = 1.0;
+  int points = 0;
+  for (; std::getline(table, line); ++points) {
+    std::istringstream cells(line);
+    double weight = 0.0;
+    double effort = 0.0;
+    double mass = 0.0;
+    char comma = 0;
+    cells >> weight >> comma >> effort >> comma >> mass;
+    EXPECT_GE(effort, last_effort);
+    EXPECT_LE(mass, last_mass);
+    last_effort = effort;
+    last_mass = mass;
+  }
+  EXPECT_EQ(points, 9);
+}
+
 TEST_F(FingerReachProgram, SaysThatItDidNotConvergeAndWritesItsBest) {
   EXPECT_EQ(run({"--steps", "60", "--max-iterations", "1"}), 5);
   EXPECT_EQ(result()["status"], "iteration limit");
