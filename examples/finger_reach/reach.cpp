@@ -99,7 +99,7 @@ Reach make_reach(const std::filesystem::path& scene_file, const ReachOptions& op
   constraints.push_back(slenderness(out.phalanges, set, kRatio));
 
   HeldControls controls;
-  controls.hold = std::max(1, steps / kBlocks);
+  controls.hold = std::max(1, steps / options.blocks);
   controls.start = holding_controls(model, kStart);
   controls.lower = Eigen::VectorXd::Constant(4, -1.0);
   controls.upper = Eigen::VectorXd::Constant(4, 1.0);

@@ -34,6 +34,7 @@ constexpr double kLimitMargin = 0.01;  ///< for what happens in between, rad
 /// What is to be solved, and how it becomes a nonlinear program.
 struct ReachOptions {
   int steps = 600;  ///< of the 3 s, a multiple of 60; coarse ones for derivatives: 12, 24, 36, 48
+  int blocks = kBlocks;  ///< of constant torque; the last may be shorter
   TranscriptionOptions transcription = {};
   /// In each of them BDF2 starts anew, whatever the formulation; multiple shooting has no other
   /// way.

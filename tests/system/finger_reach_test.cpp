@@ -143,7 +143,7 @@ TEST(FingerReach, HasTheSameOptimumAllAtOnce) {
 }
 
 TEST(FingerReach, PassesIpoptsDerivativeChecker) {
-  const Reach reach = make_reach(kScene, {.steps = 12});
+  const Reach reach = make_reach(kScene, {.steps = 12, .blocks = 3});
   const solvers::IpoptDerivativeTest test =
       solvers::test_derivatives_with_ipopt(*reach.problem, solvers::HessianKind::kExact);
   EXPECT_TRUE(test.passed()) << test.text;
