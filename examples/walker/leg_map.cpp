@@ -56,4 +56,12 @@ LegMap::LegMap(const Model& model, const ParameterSet& set, double share)
   variables_.scale = 0.1 * nominal_;
 }
 
+void LegMap::begin_at(const Eigen::Vector2d& lengths) {
+  const bool held = variables_.lower == variables_.upper;
+  variables_.start = lengths;
+  if (held) {
+    variables_.lower = variables_.upper = lengths;
+  }
+}
+
 }  // namespace hbar::walker

@@ -29,6 +29,9 @@ class LegMap final : public DesignMap {
   /// @throws InvalidInput if a segment is no capsule, or the legs differ
   LegMap(const Model& model, const ParameterSet& set, double share);
 
+  /// Lets an optimisation begin at other lengths than the scene's; held lengths are held there.
+  void begin_at(const Eigen::Vector2d& lengths);
+
   [[nodiscard]] const DesignVariables& variables() const override { return variables_; }
   [[nodiscard]] Eigen::Index parameter_count() const override { return base_.size(); }
   [[nodiscard]] bool depends(Eigen::Index parameter, Eigen::Index variable) const override {

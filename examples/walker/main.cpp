@@ -36,8 +36,8 @@ struct Step {
 };
 
 constexpr std::array<Step, 3> kSteps = {
-    {{"some gait near the first guess, with the scene's lengths", Aim::kFollowGuess, "first", true},
-     {"least cost with wide corners", Aim::kSmoothedCost, "smoothed", false},
+    {{"some gait near the first guess, with given lengths", Aim::kFollowGuess, "first", true},
+     {"least cost with wide corners, the same lengths", Aim::kSmoothedCost, "smoothed", true},
      {"least cost of transport", Aim::kCostOfTransport, "", false}}};
 
 std::filesystem::path folder_of(const Step& step, const Arguments& arguments) {
@@ -95,6 +95,7 @@ ExitCode run_line(int argc, char** argv) {
   app.add_option("--lengths", lengths, "Of thighs and shanks: free, or fixed at the scene's.")
       ->check(CLI::IsMember({"free", "fixed"}))
       ->capture_default_str();
+  app.add_option("--begin", arguments.plan.begin, "Thigh and shank to begin with, m.")->expected(2);
   app.add_option("--steps", arguments.plan.steps, "Of half a gait.")
       ->check(CLI::Range(10, 1000))
       ->capture_default_str();

@@ -185,7 +185,11 @@ ConstraintPointer mirrored_periodicity(const Model& model, int steps, double adv
 Eigen::MatrixXd first_guess(const Plan& plan, const Model& model) {
   constexpr double kLift = 0.07;     // of the swinging foot, m
   constexpr double kStretch = 0.98;  // longest leg over thigh and shank
-  const Leg leg = leg_of(model);
+  Leg leg = leg_of(model);
+  if (!plan.begin.empty()) {
+    leg.thigh = plan.begin.at(0);
+    leg.shank = plan.begin.at(1);
+  }
   const double half = 0.5 * plan.advance();
   const double reach = kStretch * (leg.thigh + leg.shank);
   const double hip = std::sqrt(reach * reach - half * half);
@@ -214,6 +218,9 @@ TrajectoryProblem walker_problem(const Plan& plan, Aim aim) {
   const Eigen::MatrixXd guess = first_guess(plan, model);
   const ParameterSet set = leg_parameters(model);
   auto map = std::make_shared<LegMap>(model, set, plan.length_share);
+  if (!plan.begin.empty()) {
+    map->begin_at({plan.begin.at(0), plan.begin.at(1)});
+  }
   Simulator simulator(model, set, simulation_options(plan, model));
 
   std::vector<ConstraintPointer> constraints = contact_schedule(plan, model);

@@ -19,7 +19,9 @@ struct Plan {
   int blocks = 25;              ///< of controls that are held
   double double_support = 0.1;  ///< share of half a gait during which both feet touch
   double clearance = 0.03;      ///< of the swinging foot in the middle of its swing, m
-  double length_share = 0.25;   ///< how much shorter or longer thighs and shanks may get; 0: held
+  /// Lengths of thigh and shank to begin with, m; empty: the scene's.
+  std::vector<double> begin = {};
+  double length_share = 0.25;  ///< how much shorter or longer thighs and shanks may get; 0: held
   /// Steps at which BDF2 starts anew when a solution is simulated, as it does between the segments
   /// of multiple shooting.
   std::vector<int> restarts = {};
