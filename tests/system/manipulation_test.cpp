@@ -60,6 +60,31 @@ TEST(Manipulation, HasTheGradientThatDifferencesGive) {
   }
 }
 
+/// The objective's own second partials, which exact and Gauss-Newton Hessians ask for, say how its
+/// partials change from one trajectory to another: it is quadratic.
+TEST(Manipulation, HasExactSecondPartials) {
+  const Task task = rotate_box();
+  const auto problem = make_problem(task, 1.0);
+  TrajectoryValues values = problem->trajectory_values(problem->variables().start);
+  const Objective& objective = problem->problem().objective;
+  const std::vector<SecondPlace> places = objective.second_places(values);
+  const Eigen::VectorXd second = objective.second_partials(values);
+  double bend = 0.0;  // δᵀ ∂²Ψ δ for the step δ = 1 of every number
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    bend += (places[i].a == places[i].b ? 1.0 : 2.0) * second[static_cast<Eigen::Index>(i)];
+  }
+  const double here = objective.value(values);
+  const auto move = [&](double step) {
+    for (Eigen::MatrixXd* numbers : {&values.q, &values.qdot, &values.u}) {
+      numbers->array() += step;
+    }
+    return objective.value(values);
+  };
+  const double ahead = move(1.0);
+  const double behind = move(-2.0);
+  EXPECT_NEAR(ahead - 2.0 * here + behind, bend, 1e-9 * bend);
+}
+
 TEST(Manipulation, MapsLengthsAffinely) {
   const Task task = rotate_box();
   const auto problem = make_problem(task, 1.0);
