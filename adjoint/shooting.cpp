@@ -157,6 +157,14 @@ std::vector<Eigen::Index> Shooting::columns_of(const ValuePlace& place) const {
   return out;
 }
 
+/// A number's derivatives by all that its segment knows.
+Eigen::RowVectorXd Shooting::tangent_of(const ValuePlace& place) const {
+  const ShootingSegment& segment = segment_of(place.step);
+  const Eigen::MatrixXd& all = *tangents_of(segment.tangents(), place.field);
+  const Eigen::Index rows = all.rows() / (segment.step_count() + 1);
+  return all.row((place.step - segment.first_step()) * rows + place.index);
+}
+
 void Shooting::derivatives_of(const ValuePlace& place, std::vector<double>& out) {
   const std::vector<Eigen::Index> places = columns_of(place);
   out.assign(places.size(), 1.0);
@@ -169,13 +177,10 @@ void Shooting::derivatives_of(const ValuePlace& place, std::vector<double>& out)
     }
     return;
   }
-  const ShootingSegment& segment = segment_of(place.step);
-  const SegmentColumns& columns = segment.columns();
-  const Eigen::MatrixXd& all = *tangents_of(segment.tangents(), place.field);
-  const Eigen::Index rows = all.rows() / (segment.step_count() + 1);
-  const Eigen::Index row = (place.step - segment.first_step()) * rows + place.index;
+  const Eigen::RowVectorXd all = tangent_of(place);
+  const SegmentColumns& columns = segment_of(place.step).columns();
   for (std::size_t i = 0; i < places.size(); ++i) {
-    out[i] = all(row, columns.variable(places[i]));
+    out[i] = all[columns.variable(places[i])];
   }
 }
 

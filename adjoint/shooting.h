@@ -51,6 +51,13 @@ class Shooting final : public Transcription {
   void differentiate(const Eigen::VectorXd& x);
   [[nodiscard]] HessianPlan& plan(solvers::HessianKind kind);
   [[nodiscard]] HessianPlan make_plan(solvers::HessianKind kind) const;
+  // Numbers of the trajectory depend on nearly all that a segment knows: their second partials are
+  // summed as dense matrices, a block for each two segments that a pair reads.
+  void add_second_places(const std::vector<SecondPlace>& places, EntryPlan& entries) const override;
+  void put_second_partials(const std::vector<SecondPlace>& places, const Eigen::VectorXd& second,
+                           EntryPlan& entries) override;
+  [[nodiscard]] int segment_index(const ValuePlace& place) const;
+  [[nodiscard]] Eigen::RowVectorXd tangent_of(const ValuePlace& place) const;
   void put_curvature(double sigma, const Eigen::VectorXd& lambda, EntryPlan& entries);
 
   int threads_ = 1;

@@ -1,10 +1,111 @@
 // The Hessian of the Lagrangian of Shooting.
+#include <algorithm>
+#include <iterator>
+#include <map>
 #include <utility>
 
 #include "hbar/adjoint/shooting.h"
 #include "hbar/core/error.h"
 
 namespace hbar {
+namespace {
+
+bool is_input(const ValuePlace& place) {
+  return place.field == ValueField::kU || place.field == ValueField::kP;
+}
+
+/// Whether a pair is summed in a dense block of two segments.
+bool is_dense(const SecondPlace& place) { return !is_input(place.a) && !is_input(place.b); }
+
+/// The pairs (places in a list) of each block, by its two segments.
+using Blocks = std::map<std::pair<int, int>, std::vector<std::size_t>>;
+
+template <typename IndexOf>
+Blocks blocks_of(const std::vector<SecondPlace>& places, const IndexOf& segment_of) {
+  Blocks out;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (is_dense(places[i])) {
+      const int a = segment_of(places[i].a);
+      const int b = segment_of(places[i].b);
+      out[{std::min(a, b), std::max(a, b)}].push_back(i);
+    }
+  }
+  return out;
+}
+
+std::vector<SecondPlace> sparse_ones(const std::vector<SecondPlace>& places) {
+  std::vector<SecondPlace> out;
+  std::copy_if(places.begin(), places.end(), std::back_inserter(out),
+               [](const SecondPlace& place) { return !is_dense(place); });
+  return out;
+}
+
+}  // namespace
+
+int Shooting::segment_index(const ValuePlace& place) const {
+  const ShootingSegment* segment = &segment_of(place.step);
+  const auto at = std::find_if(segments_.begin(), segments_.end(),
+                               [&](const auto& each) { return each.get() == segment; });
+  return static_cast<int>(at - segments_.begin());
+}
+
+void Shooting::add_second_places(const std::vector<SecondPlace>& places, EntryPlan& entries) const {
+  Transcription::add_second_places(sparse_ones(places), entries);
+  const auto index = [this](const ValuePlace& place) { return segment_index(place); };
+  for (const auto& [block, pairs] : blocks_of(places, index)) {
+    const SegmentColumns& a = segments_[static_cast<std::size_t>(block.first)]->columns();
+    const SegmentColumns& b = segments_[static_cast<std::size_t>(block.second)]->columns();
+    const bool same = block.first == block.second;
+    for (Eigen::Index j = 0; j < b.size(); ++j) {
+      for (Eigen::Index i = same ? j : 0; i < a.size(); ++i) {
+        entries.add_lower(a.place(i), b.place(j));
+      }
+    }
+  }
+}
+
+void Shooting::put_second_partials(const std::vector<SecondPlace>& places,
+                                   const Eigen::VectorXd& second, EntryPlan& entries) {
+  std::vector<double> sparse;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!is_dense(places[i])) {
+      sparse.push_back(second[static_cast<Eigen::Index>(i)]);
+    }
+  }
+  Transcription::put_second_partials(
+      sparse_ones(places),
+      Eigen::Map<const Eigen::VectorXd>(sparse.data(), static_cast<Eigen::Index>(sparse.size())),
+      entries);
+  const auto index = [this](const ValuePlace& place) { return segment_index(place); };
+  for (const auto& [block, pairs] : blocks_of(places, index)) {
+    const SegmentColumns& a = segments_[static_cast<std::size_t>(block.first)]->columns();
+    const SegmentColumns& b = segments_[static_cast<std::size_t>(block.second)]->columns();
+    const bool same = block.first == block.second;
+    const auto count = static_cast<Eigen::Index>(pairs.size());
+    Eigen::MatrixXd by_a(count, a.size());
+    Eigen::MatrixXd by_b(count, b.size());
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const SecondPlace& place = places[pairs[static_cast<std::size_t>(k)]];
+      const bool in_order = segment_index(place.a) == block.first;
+      // Within one segment a pair of two numbers stands for (b, a) as well; its matrix is made
+      // symmetric below, so that a number with itself counts half.
+      const double half = same && place.a == place.b ? 0.5 : 1.0;
+      const auto at = static_cast<Eigen::Index>(pairs[static_cast<std::size_t>(k)]);
+      by_a.row(k) = half * second[at] * tangent_of(in_order ? place.a : place.b);
+      by_b.row(k) = tangent_of(in_order ? place.b : place.a);
+    }
+    const Eigen::MatrixXd product = by_a.transpose() * by_b;
+    for (Eigen::Index j = 0; j < b.size(); ++j) {
+      for (Eigen::Index i = same ? j : 0; i < a.size(); ++i) {
+        if (same) {
+          entries.put(product(i, j) + product(j, i));
+        } else {
+          entries.put((a.place(i) == b.place(j) ? 2.0 : 1.0) * product(i, j));
+        }
+      }
+    }
+  }
+}
 
 Shooting::HessianPlan Shooting::make_plan(solvers::HessianKind kind) const {
   HessianPlan out = begin_plan(kind);

@@ -97,6 +97,12 @@ class Transcription : public solvers::Nlp {
   void add_own_rows(EntryPlan& entries) const;
   void put_own_rows(const TrajectoryValues& values, EntryPlan& entries);
 
+  /// Lays down Σ second (a bᵀ + b aᵀ), once where a is b, with a and b the derivatives of two
+  /// numbers by x, place by place; and fills it in the same order.
+  virtual void add_second_places(const std::vector<SecondPlace>& places, EntryPlan& entries) const;
+  virtual void put_second_partials(const std::vector<SecondPlace>& places,
+                                   const Eigen::VectorXd& second, EntryPlan& entries);
+
   /// The Hessian's set-up for one kind; a transcription adds its own entries behind.
   struct HessianPlan {
     EntryPlan entries;
@@ -117,9 +123,6 @@ class Transcription : public solvers::Nlp {
   TranscriptionTimes times_;
 
  private:
-  void add_second_places(const std::vector<SecondPlace>& places, EntryPlan& entries) const;
-  void put_second_partials(const std::vector<SecondPlace>& places, const Eigen::VectorXd& second,
-                           EntryPlan& entries);
   [[nodiscard]] Eigen::VectorXd own_second_partials(const TrajectoryValues& values,
                                                     const Eigen::VectorXd& lambda) const;
 

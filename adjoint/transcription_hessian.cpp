@@ -64,7 +64,6 @@ void Transcription::add_second_places(const std::vector<SecondPlace>& places,
   }
 }
 
-/// Σ second (a bᵀ + b aᵀ), once where a is b, with a and b the derivatives of two numbers by x.
 void Transcription::put_second_partials(const std::vector<SecondPlace>& places,
                                         const Eigen::VectorXd& second, EntryPlan& entries) {
   std::vector<double> a;
