@@ -27,7 +27,7 @@ struct Row {
   bool periodic = true;  ///< whether its periodic system is regular: something ties it to a place
 };
 
-constexpr std::array<Row, 12> kRows = {{
+constexpr std::array<Row, 15> kRows = {{
     {"chain", {3, 7, 16}, {20, 50, 50}},
     {"chain", {7, 12, 7}, {8, 30, 200}},
     {"tree", {7, 15, 31}, {8, 20, 20}},
@@ -40,6 +40,9 @@ constexpr std::array<Row, 12> kRows = {{
     {"rotate_box", {}, {10, 20, 60}},
     {"flip_box", {}, {10, 20, 60}},
     {"assemble", {}, {5, 20, 60}, false},
+    {"swing_up", {}, {30, 200, 1000}, false},
+    {"identify", {}, {20, 100, 500}, false},
+    {"walker", {}, {5, 20, 60}, false},
 }};
 
 bool ends_with(const std::string& text, std::string_view end) {

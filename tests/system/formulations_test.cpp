@@ -62,6 +62,7 @@ TrajectoryProblem reach_problem() {
                         .design_weight = 0.05};
   out.objective.add(squared_velocity(0.05)).add(control_smoothness(1e-4));
   out.controls.hold = 2;
+  out.controls.scale = Eigen::Vector2d::Ones();  // one-sided differences want small steps
   out.controls.lower = Eigen::Vector2d::Constant(-25.0);
   out.controls.upper = Eigen::Vector2d::Constant(25.0);
   out.constraints = {variable_at_step(model, "tip", kReachSteps, {0.45, 0.0, 0.35}),

@@ -73,7 +73,8 @@ TEST(Corpus, HasHundredsOfCasesOfDifferentNames) {
   for (const Family& family : families()) {
     EXPECT_TRUE(sources.contains(family.name)) << family.name;
   }
-  for (const auto& entry : std::filesystem::directory_iterator(HBAR_SOURCE_DIR "/examples/scenes")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(HBAR_SOURCE_DIR "/examples/scenes")) {
     if (entry.path().extension() == ".xml") {
       EXPECT_TRUE(sources.contains(entry.path().stem().string())) << entry.path();
     }
