@@ -29,8 +29,11 @@ AllAtOnce::AllAtOnce(const TrajectoryProblem& problem, const TranscriptionOption
   guess(options.q_guess);
   lay_out_stages();
   lay_out_outputs();
-  scale_rows();
-  lay_out_jacobian();
+  row_scale_.setOnes(problem_.simulator.model().dof() * trajectory_.timeline.last_stage());
+  differentiate(variables_.start);
+  const Linearization& system = linearizer_.linearize(trajectory_);
+  scale_rows(system);
+  lay_out_jacobian(system);
 }
 
 Eigen::Index AllAtOnce::stage_place(int stage) const {
@@ -103,10 +106,7 @@ void AllAtOnce::lay_out_stages() {
   }
 }
 
-void AllAtOnce::scale_rows() {
-  row_scale_.setOnes(problem_.simulator.model().dof() * trajectory_.timeline.last_stage());
-  differentiate(variables_.start);
-  const Linearization& system = linearizer_.linearize(trajectory_);
+void AllAtOnce::scale_rows(const Linearization& system) {
   Eigen::VectorXd largest = Eigen::VectorXd::Zero(row_scale_.size());
   const solvers::SparseMatrix& H = system.H.matrix();
   for (int j = 0; j < H.outerSize(); ++j) {
@@ -136,9 +136,8 @@ void AllAtOnce::put_matrix(const solvers::SparseMatrix& matrix) {
   }
 }
 
-void AllAtOnce::lay_out_jacobian() {
+void AllAtOnce::lay_out_jacobian(const Linearization& system) {
   add_own_rows(jacobian_);
-  const Linearization& system = linearizer_.linearize(trajectory_);
   add_matrix(system.H.matrix(), head_.size());
   const Eigen::Index controls = head_.control_count();
   for (int j = 0; j < system.dg_du.outerSize(); ++j) {
@@ -163,10 +162,7 @@ void AllAtOnce::lay_out_jacobian() {
 }
 
 void AllAtOnce::move_to(const Eigen::VectorXd& x) {
-  if (x.size() != variables_.start.size()) {
-    throw InvalidInput(concat("transcription: x has ", x.size(), " entries; it must have ",
-                              variables_.start.size()));
-  }
+  require_size(x);
   if (x_.size() != x.size() || x_ != x) {
     const Stopwatch stopwatch(times_.simulation);
     ++times_.simulations;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -31,7 +30,6 @@ class AllAtOnce final : public Transcription {
   void objective_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& g) override;
   void constraints(const Eigen::VectorXd& x, Eigen::VectorXd& c) override;
   void constraint_jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& values) override;
-  [[nodiscard]] const solvers::SparsityPattern& hessian_pattern(solvers::HessianKind kind) override;
   void lagrangian_hessian(const Eigen::VectorXd& x, double sigma, const Eigen::VectorXd& lambda,
                           solvers::HessianKind kind, Eigen::VectorXd& values) override;
   /// Of the coordinates in x, which need not be a motion.
@@ -60,8 +58,8 @@ class AllAtOnce final : public Transcription {
 
   void guess(const Eigen::MatrixXd& q_guess);
   void lay_out_stages();
-  void scale_rows();
-  void lay_out_jacobian();
+  void scale_rows(const Linearization& system);
+  void lay_out_jacobian(const Linearization& system);
   void add_matrix(const solvers::SparseMatrix& matrix, Eigen::Index first_column);
   void put_matrix(const solvers::SparseMatrix& matrix);
   void move_to(const Eigen::VectorXd& x);
@@ -78,7 +76,7 @@ class AllAtOnce final : public Transcription {
                                     int coordinate);
   void differentiate_output(const ValuePlace& place);
 
-  [[nodiscard]] HessianPlan& plan(solvers::HessianKind kind);
+  void add_curvature(EntryPlan& entries) const override;
   void add_stage(int stage, EntryPlan& entries) const;
   void put_stage(int stage, EntryPlan& entries) const;
   [[nodiscard]] OutputRows<double> output_weights(const TrajectoryPartials& partials, int k) const;
@@ -102,8 +100,6 @@ class AllAtOnce final : public Transcription {
   Mechanism<double> mechanism_;
   Eigen::VectorXd row_scale_;  // of ḡ's rows
   EntryPlan jacobian_;
-  std::optional<HessianPlan> exact_;
-  std::optional<HessianPlan> gauss_newton_;
 
   Eigen::VectorXd x_;  // the last point
   std::string failure_;

@@ -4,28 +4,15 @@
 
 namespace hbar {
 
-solvers::SparsityPattern const& AllAtOnce::hessian_pattern(solvers::HessianKind kind) {
-  return plan(kind).entries.pattern();
-}
-
-AllAtOnce::HessianPlan& AllAtOnce::plan(solvers::HessianKind kind) {
-  std::optional<HessianPlan>& kept = kind == solvers::HessianKind::kExact ? exact_ : gauss_newton_;
-  if (!kept) {
-    HessianPlan next = begin_plan(kind);
-    if (kind == solvers::HessianKind::kExact) {
-      for (int s = 0; s < trajectory_.timeline.stage_count(); ++s) {
-        add_stage(s, next.entries);
-      }
-      for (Eigen::Index j = 0; j < head_.design_count(); ++j) {
-        for (Eigen::Index i = j; i < head_.design_count(); ++i) {
-          next.entries.add(i, j);
-        }
-      }
-    }
-    next.entries.finish();
-    kept = std::move(next);
+void AllAtOnce::add_curvature(EntryPlan& entries) const {
+  for (int s = 0; s < trajectory_.timeline.stage_count(); ++s) {
+    add_stage(s, entries);
   }
-  return *kept;
+  for (Eigen::Index j = 0; j < head_.design_count(); ++j) {
+    for (Eigen::Index i = j; i < head_.design_count(); ++i) {
+      entries.add(i, j);
+    }
+  }
 }
 
 /// Visits the pairs of a stage's runs of x that have second derivatives: f(a, b), b not behind a.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hbar/core/drives.h"
 #include "hbar/core/error.h"
 #include "hbar/core/instant_outputs.h"
 #include "hbar/core/parameter_derivatives.h"
@@ -125,16 +126,10 @@ void AdjointSweep::Workspace::sweep_stage(const Trajectory& trajectory, int s, G
   y_start.q = c * z.cwiseProduct(forces.by_start_q);
   y_start.qdot = c * z.cwiseProduct(forces.by_start_qdot);
   history.scatter(trajectory, s, y_qdot, y_a, y_start, q_bar, qdot_bar);
-  const Model& model = simulator.model();
   const int step = trajectory.timeline.stage(s).step;
-  for (int m = 0; m < static_cast<int>(model.motors().size()); ++m) {
-    const CoordinateRange range =
-        model.coordinates_of_link(model.motors()[static_cast<std::size_t>(m)].link);
-    for (int k = range.begin; k < range.end; ++k) {
-      const int control = model.first_control(m) + k - range.begin;
-      out.u(control, step) += c * z[k] * forces.by_u[control];
-    }
-  }
+  for_each_drive(simulator.model(), [&](int k, int control) {
+    out.u(control, step) += c * z[k] * forces.by_u[control];
+  });
   add_parameter_gradient<double>(mechanism, simulator.parameters(), trajectory.inputs.p, stage,
                                  point, z, -1.0, out.p);
 }

@@ -1,5 +1,6 @@
 #include "hbar/adjoint/linearization.h"
 
+#include "hbar/core/drives.h"
 #include "hbar/core/parameter_derivatives.h"
 
 namespace hbar {
@@ -120,14 +121,7 @@ void Linearizer::Workspace::lay_out_controls(const Timeline& t) {
   const int n = model.dof();
   const int controls = model.control_count();
   std::vector<int> row(static_cast<std::size_t>(controls));
-  for (int m = 0; m < static_cast<int>(model.motors().size()); ++m) {
-    const int first = model.first_control(m);
-    const CoordinateRange range =
-        model.coordinates_of_link(model.motors()[static_cast<std::size_t>(m)].link);
-    for (int c = range.begin; c < range.end; ++c) {
-      row[static_cast<std::size_t>(first + c - range.begin)] = c;
-    }
-  }
+  for_each_drive(model, [&](int c, int control) { row[static_cast<std::size_t>(control)] = c; });
   Eigen::VectorXi counts(controls * t.step_count());
   for (int k = 0; k < t.step_count(); ++k) {
     counts.segment(k * controls, controls).setConstant(t.step_end(k + 1) - t.step_end(k));

@@ -2,38 +2,14 @@
 
 #include <utility>
 
+#include "hbar/core/drives.h"
+#include "hbar/core/dual_vectors.h"
 #include "hbar/core/error.h"
 #include "hbar/core/instant_outputs.h"
 #include "hbar/core/parameter_derivatives.h"
 
 namespace hbar {
 namespace {
-
-/// value + ε slope, entry by entry.
-void set_dual(const Eigen::Ref<const Eigen::MatrixXd>& value,
-              const Eigen::Ref<const Eigen::MatrixXd>& slope, MatrixX<Dual>& out) {
-  out.resize(value.rows(), value.cols());
-  for (Eigen::Index j = 0; j < value.cols(); ++j) {
-    for (Eigen::Index i = 0; i < value.rows(); ++i) {
-      out(i, j) = {value(i, j), slope(i, j)};
-    }
-  }
-}
-
-VectorX<Dual> dual_vector(const Eigen::VectorXd& value, const Eigen::VectorXd& slope) {
-  VectorX<Dual> out(value.size());
-  for (Eigen::Index i = 0; i < value.size(); ++i) {
-    out[i] = {value[i], slope[i]};
-  }
-  return out;
-}
-
-template <typename Derived>
-void set_slopes(const Eigen::MatrixBase<Derived>& duals, Eigen::Ref<Eigen::VectorXd> out) {
-  for (Eigen::Index i = 0; i < duals.size(); ++i) {
-    out[i] = duals[i].slope;
-  }
-}
 
 void set_slope(VectorX<Dual>& duals, const Eigen::VectorXd& slope) {
   for (Eigen::Index i = 0; i < duals.size(); ++i) {
@@ -143,16 +119,16 @@ void SecondOrderSweep::Workspace::set_stage(int s) {
 /// Slopes of the values at step k.
 void SecondOrderSweep::Workspace::read_values(int k) {
   const int s = trajectory().timeline.step_end(k);
-  set_slopes(q_d.col(s), tangent.q.col(k));
-  set_slopes(qdot_d.col(s), tangent.qdot.col(k));
+  tangent.q.col(k) = slopes_of(q_d.col(s));
+  tangent.qdot.col(k) = slopes_of(qdot_d.col(s));
   if (outputs.empty()) {
     return;
   }
   outputs.read(mechanism_d, outputs.motion_at(mechanism_d, q_d.col(s), qdot_d.col(s)), q_d.col(s),
                qdot_d.col(s), u_d.col(measured_step(k)), rows);
-  set_slopes(rows.v, tangent.v.col(k));
-  set_slopes(rows.tactile, tangent.tactile.col(k));
-  set_slopes(rows.measured, tangent.measured.col(k));
+  tangent.v.col(k) = slopes_of(rows.v);
+  tangent.tactile.col(k) = slopes_of(rows.tactile);
+  tangent.measured.col(k) = slopes_of(rows.measured);
 }
 
 /// Brings the outputs' weights at step k to what they depend on.
@@ -197,17 +173,10 @@ void SecondOrderSweep::Workspace::sweep_stage(int s) {
   y_start.q = c * z.cwiseProduct(forces.by_start_q);
   y_start.qdot = c * z.cwiseProduct(forces.by_start_qdot);
   history.scatter<Dual>(trajectory(), q_d, qdot_d, s, y_qdot, y_a, y_start, q_bar, qdot_bar);
-  const Model& model = simulator.model();
   const int step = trajectory().timeline.stage(s).step;
-  for (int m = 0; m < static_cast<int>(model.motors().size()); ++m) {
-    const int first = model.first_control(m);
-    const CoordinateRange range =
-        model.coordinates_of_link(model.motors()[static_cast<std::size_t>(m)].link);
-    for (int k = range.begin; k < range.end; ++k) {
-      const int control = first + k - range.begin;
-      u_bar(control, step) += c * z[k] * forces.by_u[control];
-    }
-  }
+  for_each_drive(simulator.model(), [&](int k, int control) {
+    u_bar(control, step) += c * z[k] * forces.by_u[control];
+  });
   add_parameter_gradient<Dual>(mechanism_d, simulator.parameters(), p_d, stage_d, point_d, z, -1.0,
                                p_bar);
 }
@@ -234,7 +203,7 @@ const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
   require_shape(direction, trajectory.inputs);
   w.p_d = dual_vector(trajectory.inputs.p, direction.p);
   apply_parameters<Dual>(w.simulator.model(), w.simulator.parameters(), w.p_d, w.mechanism_d);
-  set_dual(trajectory.inputs.u, direction.u, w.u_d);
+  w.u_d = dual_matrix(trajectory.inputs.u, direction.u);
   w.q_d = trajectory.q.cast<Dual>();
   w.qdot_d = trajectory.qdot.cast<Dual>();
   w.q_d.col(0) = dual_vector(trajectory.q.col(0), direction.q0);
@@ -242,7 +211,7 @@ const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
   for (int s = 1; s <= trajectory.timeline.last_stage(); ++s) {
     w.set_stage(s);
     w.stage_d.residual(w.mechanism_d, w.point_d, w.g_d);
-    set_slopes(w.g_d, w.delta);
+    w.delta = slopes_of(w.g_d);
     w.delta = -w.factors[static_cast<std::size_t>(s)].solve(w.delta).eval();
     for (Eigen::Index i = 0; i < w.delta.size(); ++i) {
       w.q_d(i, s).slope = w.delta[i];
@@ -280,10 +249,10 @@ const Gradient& SecondOrderSweep::product(const TrajectoryPartials* weights_tang
     w.q_bar.col(s) += dual_vector(y.q.col(k), dy.q.col(k));
     w.qdot_bar.col(s) += dual_vector(y.qdot.col(k), dy.qdot.col(k));
   }
-  set_dual(y.v, dy.v, w.v_weights);
-  set_dual(y.tactile, dy.tactile, w.tactile_weights);
-  set_dual(y.measured, dy.measured, w.measured_weights);
-  set_dual(y.u, dy.u, w.u_bar);
+  w.v_weights = dual_matrix(y.v, dy.v);
+  w.tactile_weights = dual_matrix(y.tactile, dy.tactile);
+  w.measured_weights = dual_matrix(y.measured, dy.measured);
+  w.u_bar = dual_matrix(y.u, dy.u);
   w.p_bar = dual_vector(y.p, dy.p);
   int k = timeline.step_count();
   for (int s = timeline.last_stage(); s > 0; --s) {
@@ -294,11 +263,10 @@ const Gradient& SecondOrderSweep::product(const TrajectoryPartials* weights_tang
     w.sweep_stage(s);
   }
   w.add_outputs(0);
-  const auto slope = [](const Dual& d) { return d.slope; };
-  w.out.p = w.p_bar.unaryExpr(slope);
-  w.out.u = w.u_bar.unaryExpr(slope);
-  w.out.q0 = w.q_bar.col(0).unaryExpr(slope);
-  w.out.qdot0 = w.qdot_bar.col(0).unaryExpr(slope);
+  w.out.p = slopes_of(w.p_bar);
+  w.out.u = slopes_of(w.u_bar);
+  w.out.q0 = slopes_of(w.q_bar.col(0));
+  w.out.qdot0 = slopes_of(w.qdot_bar.col(0));
   return w.out;
 }
 

@@ -218,10 +218,7 @@ void Shooting::for_each_segment(const std::function<void(std::size_t)>& f) {
 }
 
 void Shooting::move_to(const Eigen::VectorXd& x) {
-  if (x.size() != variables_.start.size()) {
-    throw InvalidInput(concat("transcription: x has ", x.size(), " entries; it must have ",
-                              variables_.start.size()));
-  }
+  require_size(x);
   if (x_.size() != x.size() || x_ != x) {
     const Stopwatch stopwatch(times_.simulation);
     ++times_.simulations;

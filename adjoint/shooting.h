@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "hbar/adjoint/shooting_segment.h"
@@ -28,7 +27,6 @@ class Shooting final : public Transcription {
   void objective_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& g) override;
   void constraints(const Eigen::VectorXd& x, Eigen::VectorXd& c) override;
   void constraint_jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& values) override;
-  [[nodiscard]] const solvers::SparsityPattern& hessian_pattern(solvers::HessianKind kind) override;
   void lagrangian_hessian(const Eigen::VectorXd& x, double sigma, const Eigen::VectorXd& lambda,
                           solvers::HessianKind kind, Eigen::VectorXd& values) override;
   [[nodiscard]] const TrajectoryValues& trajectory_values(const Eigen::VectorXd& x) override;
@@ -49,8 +47,6 @@ class Shooting final : public Transcription {
   void gather_values(const Inputs& whole);
   void move_to(const Eigen::VectorXd& x);
   void differentiate(const Eigen::VectorXd& x);
-  [[nodiscard]] HessianPlan& plan(solvers::HessianKind kind);
-  [[nodiscard]] HessianPlan make_plan(solvers::HessianKind kind) const;
   // Numbers of the trajectory depend on nearly all that a segment knows: their second partials are
   // summed as dense matrices, a block for each two segments that a pair reads.
   void add_second_places(const std::vector<SecondPlace>& places, EntryPlan& entries) const override;
@@ -58,13 +54,12 @@ class Shooting final : public Transcription {
                            EntryPlan& entries) override;
   [[nodiscard]] int segment_index(const ValuePlace& place) const;
   [[nodiscard]] Eigen::RowVectorXd tangent_of(const ValuePlace& place) const;
+  void add_curvature(EntryPlan& entries) const override;
   void put_curvature(double sigma, const Eigen::VectorXd& lambda, EntryPlan& entries);
 
   int threads_ = 1;
   std::vector<std::unique_ptr<ShootingSegment>> segments_;
   EntryPlan jacobian_;
-  std::optional<HessianPlan> exact_;
-  std::optional<HessianPlan> gauss_newton_;
 
   Eigen::VectorXd x_;  // the last point
   bool differentiated_ = false;

@@ -107,32 +107,15 @@ void Shooting::put_second_partials(const std::vector<SecondPlace>& places,
   }
 }
 
-Shooting::HessianPlan Shooting::make_plan(solvers::HessianKind kind) const {
-  HessianPlan out = begin_plan(kind);
-  if (kind == solvers::HessianKind::kExact) {
-    for (const auto& segment : segments_) {
-      const SegmentColumns& columns = segment->columns();
-      for (Eigen::Index j = 0; j < columns.size(); ++j) {
-        for (Eigen::Index i = j; i < columns.size(); ++i) {
-          out.entries.add_lower(columns.place(i), columns.place(j));
-        }
+void Shooting::add_curvature(EntryPlan& entries) const {
+  for (const auto& segment : segments_) {
+    const SegmentColumns& columns = segment->columns();
+    for (Eigen::Index j = 0; j < columns.size(); ++j) {
+      for (Eigen::Index i = j; i < columns.size(); ++i) {
+        entries.add_lower(columns.place(i), columns.place(j));
       }
     }
   }
-  out.entries.finish();
-  return out;
-}
-
-Shooting::HessianPlan& Shooting::plan(solvers::HessianKind kind) {
-  std::optional<HessianPlan>& kept = kind == solvers::HessianKind::kExact ? exact_ : gauss_newton_;
-  if (!kept) {
-    kept = make_plan(kind);
-  }
-  return *kept;
-}
-
-const solvers::SparsityPattern& Shooting::hessian_pattern(solvers::HessianKind kind) {
-  return plan(kind).entries.pattern();
 }
 
 /// How the numbers that the terms read bend with x: of each segment, weights being the terms'

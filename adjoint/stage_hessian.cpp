@@ -1,16 +1,13 @@
 #include "hbar/adjoint/stage_hessian.h"
 
+#include "hbar/core/drives.h"
+#include "hbar/core/dual_vectors.h"
 #include "hbar/core/parameter_derivatives.h"
 
 namespace hbar {
 namespace {
 
 VectorX<Dual> without_slope(const Eigen::VectorXd& values) { return values.cast<Dual>(); }
-
-template <typename Duals>
-auto slopes_of(const Duals& duals) {
-  return duals.unaryExpr([](const Dual& x) { return x.slope; });
-}
 
 }  // namespace
 
@@ -91,15 +88,9 @@ void StageHessian::evaluate_design(Eigen::Index i, bool with_stage) {
     da.row(i) = slopes_of(stage_.by_a());
     dsq.row(i) = -c * slopes_of(z_.cwiseProduct(forces.by_start_q));
     dsv.row(i) = -c * slopes_of(z_.cwiseProduct(forces.by_start_qdot));
-    const Model& model = simulator_.model();
-    for (int m = 0; m < static_cast<int>(model.motors().size()); ++m) {
-      const CoordinateRange range =
-          model.coordinates_of_link(model.motors()[static_cast<std::size_t>(m)].link);
-      for (int at = range.begin; at < range.end; ++at) {
-        const int control = model.first_control(m) + at - range.begin;
-        by_u_[control] -= c * z_[at] * forces.by_u[control];
-      }
-    }
+    for_each_drive(simulator_.model(), [&](int at, int control) {
+      by_u_[control] -= c * z_[at] * forces.by_u[control];
+    });
   } else {
     by_q_.setZero();
     by_qdot_.setZero();

@@ -23,6 +23,16 @@ Eigen::MatrixXd guess_states(TrajectoryProblem& problem, const InputVariables& h
   }
   const Rollout rollout = simulator.rollout(head.inputs(head.variables().start));
   const Trajectory& reached = rollout.partial();
+  if (!reached.chart_switches.empty()) {
+    const ChartSwitch& first = reached.chart_switches.front();
+    const Model& model = simulator.model();
+    throw InvalidInput(
+        concat("transcription: in the first guess exponential coordinates of '",
+               model.coordinate_name(model.tree().node(first.node).coordinates.begin),
+               "' change chart at t = ", reached.timeline.stage(first.stage).time,
+               ", where states are variables; give a q_guess that stays within one turn, use "
+               "shooting, or Euler angles"));
+  }
   const int done = reached.step_count();
   for (int k = 0; k <= done; ++k) {
     out.col(k) << reached.q_at_step(k), reached.qdot_at_step(k);

@@ -13,7 +13,8 @@ namespace hbar {
 ///
 /// @param q_guess  empty, or                                                  [dof x N+1]
 /// @returns                                                                   [2 dof x N+1]
-/// @throws InvalidInput if q_guess has another shape or is not finite
+/// @throws InvalidInput if q_guess has another shape or is not finite, or exponential coordinates
+///         change chart in what is simulated
 [[nodiscard]] Eigen::MatrixXd guess_states(TrajectoryProblem& problem, const InputVariables& head,
                                            const Eigen::MatrixXd& q_guess);
 

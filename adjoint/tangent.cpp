@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "hbar/core/dual_vectors.h"
 #include "hbar/core/instant_outputs.h"
 
 namespace hbar {
@@ -26,7 +27,7 @@ class OutputTangent {
     reverse_ = count < directions.count();
     for (Eigen::Index i = 0; i < (reverse_ || count == 0 ? 0 : directions.count()); ++i) {
       mechanisms_.push_back(nominal_mechanism<Dual>(simulator.model()));
-      apply_parameters<Dual>(simulator.model(), set_, dual(inputs.p, directions.p.col(i)),
+      apply_parameters<Dual>(simulator.model(), set_, dual_vector(inputs.p, directions.p.col(i)),
                              mechanisms_.back());
     }
   }
@@ -45,16 +46,8 @@ class OutputTangent {
   }
 
  private:
-  static VectorX<Dual> dual(const Eigen::VectorXd& value, const Eigen::VectorXd& slope) {
-    VectorX<Dual> out(value.size());
-    for (Eigen::Index i = 0; i < value.size(); ++i) {
-      out[i] = {value[i], slope[i]};
-    }
-    return out;
-  }
   static void set(const VectorX<Dual>& rows, int k, Eigen::Ref<Eigen::VectorXd> out) {
-    out.segment(k * rows.size(), rows.size()) =
-        rows.unaryExpr([](const Dual& row) { return row.slope; });
+    out.segment(k * rows.size(), rows.size()) = slopes_of(rows);
   }
 
   void by_direction(int k, const Eigen::VectorXd& q, const Eigen::VectorXd& qdot,
@@ -63,10 +56,10 @@ class OutputTangent {
     const int step = measured_step(k);
     for (std::size_t i = 0; i < mechanisms_.size(); ++i) {
       const auto column = static_cast<Eigen::Index>(i);
-      const VectorX<Dual> q_i = dual(q, dq.col(column));
-      const VectorX<Dual> qdot_i = dual(qdot, dqdot.col(column));
-      const VectorX<Dual> u_i =
-          dual(inputs_.u.col(step), directions_.u.col(column).segment(step * controls, controls));
+      const VectorX<Dual> q_i = dual_vector(q, dq.col(column));
+      const VectorX<Dual> qdot_i = dual_vector(qdot, dqdot.col(column));
+      const VectorX<Dual> u_i = dual_vector(
+          inputs_.u.col(step), directions_.u.col(column).segment(step * controls, controls));
       dual_outputs_.read(mechanisms_[i], dual_outputs_.motion_at(mechanisms_[i], q_i, qdot_i), q_i,
                          qdot_i, u_i, rows_);
       set(rows_.v, k, out.v.col(column));

@@ -55,6 +55,13 @@ Transcription::Transcription(const TrajectoryProblem& problem)
   limits_.upper = Eigen::Map<const Eigen::VectorXd>(upper.data(), own_rows_);
 }
 
+void Transcription::require_size(const Eigen::VectorXd& x) const {
+  if (x.size() != variables_.start.size()) {
+    throw InvalidInput(concat("transcription: x has ", x.size(), " entries; it must have ",
+                              variables_.start.size()));
+  }
+}
+
 void Transcription::add_variables(const solvers::NlpVariables& more) {
   const auto join = [](Eigen::VectorXd& all, const Eigen::VectorXd& tail) {
     all.conservativeResize(all.size() + tail.size());

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "hbar/adjoint/entry_plan.h"
@@ -59,6 +60,10 @@ class Transcription : public solvers::Nlp {
   [[nodiscard]] const solvers::NlpConstraints& constraint_limits() const final { return limits_; }
   [[nodiscard]] const solvers::SparsityPattern& jacobian_pattern() const final { return pattern_; }
 
+  [[nodiscard]] const solvers::SparsityPattern& hessian_pattern(solvers::HessianKind kind) final {
+    return plan(kind).entries.pattern();
+  }
+
   /// The trajectory's values at x.
   /// @throws EvaluationError where it cannot be simulated
   [[nodiscard]] virtual const TrajectoryValues& trajectory_values(const Eigen::VectorXd& x) = 0;
@@ -80,6 +85,8 @@ class Transcription : public solvers::Nlp {
   void add_variables(const solvers::NlpVariables& more);
   /// Appends equations c = 0 after the problem's own rows.
   void add_equations(const std::vector<std::string>& names);
+  /// @throws InvalidInput if x has not as many entries as there are variables
+  void require_size(const Eigen::VectorXd& x) const;
   /// Number of the problem's own rows.
   [[nodiscard]] Eigen::Index own_rows() const { return own_rows_; }
   /// Values of the problem's own rows.
@@ -103,15 +110,18 @@ class Transcription : public solvers::Nlp {
   virtual void put_second_partials(const std::vector<SecondPlace>& places,
                                    const Eigen::VectorXd& second, EntryPlan& entries);
 
-  /// The Hessian's set-up for one kind; a transcription adds its own entries behind.
+  /// The Hessian's set-up for one kind.
   struct HessianPlan {
     EntryPlan entries;
     std::vector<SecondPlace> objective;  // second places of the objective's terms
     std::vector<SecondPlace> own;        // and of the problem's own rows, `row` over all of them
   };
-  /// Lays down what the terms' second partials and the design cost give, and fills it.
+  /// The set-up for a kind, made when it is first asked for.
   /// @throws InvalidInput naming a term, or the design map, that has no second derivatives
-  [[nodiscard]] HessianPlan begin_plan(solvers::HessianKind kind) const;
+  [[nodiscard]] HessianPlan& plan(solvers::HessianKind kind);
+  /// Lays down what kExact adds behind the terms' second partials and the design cost.
+  virtual void add_curvature(EntryPlan& entries) const = 0;
+  /// Fills what the terms' second partials and the design cost give.
   void begin_values(HessianPlan& plan, const TrajectoryValues& values, double sigma,
                     const Eigen::VectorXd& lambda, Eigen::VectorXd& out);
 
@@ -126,7 +136,11 @@ class Transcription : public solvers::Nlp {
   [[nodiscard]] Eigen::VectorXd own_second_partials(const TrajectoryValues& values,
                                                     const Eigen::VectorXd& lambda) const;
 
+  [[nodiscard]] HessianPlan make_plan(solvers::HessianKind kind) const;
+
   Eigen::Index own_rows_ = 0;
+  std::optional<HessianPlan> exact_;
+  std::optional<HessianPlan> gauss_newton_;
 };
 
 /// Makes a nonlinear program of a problem, of which it keeps a copy of its own.

@@ -5,10 +5,18 @@
 
 namespace hbar {
 
-Transcription::HessianPlan Transcription::begin_plan(solvers::HessianKind kind) const {
+Transcription::HessianPlan& Transcription::plan(solvers::HessianKind kind) {
   if (kind == solvers::HessianKind::kLimitedMemory) {
     throw InvalidInput("transcription: a limited-memory Hessian is the optimiser's own");
   }
+  std::optional<HessianPlan>& kept = kind == solvers::HessianKind::kExact ? exact_ : gauss_newton_;
+  if (!kept) {
+    kept = make_plan(kind);
+  }
+  return *kept;
+}
+
+Transcription::HessianPlan Transcription::make_plan(solvers::HessianKind kind) const {
   HessianPlan out;
   out.objective = problem_.objective.second_places(value_shape(problem_.simulator));
   add_second_places(out.objective, out.entries);
@@ -33,6 +41,10 @@ Transcription::HessianPlan Transcription::begin_plan(solvers::HessianKind kind) 
       out.entries.add(i, i);
     }
   }
+  if (kind == solvers::HessianKind::kExact) {
+    add_curvature(out.entries);
+  }
+  out.entries.finish();
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "hbar/core/parameter_derivatives.h"
 
 #include "hbar/core/contact_parameters.h"
+#include "hbar/core/drives.h"
 #include "hbar/core/rotation.h"
 
 namespace hbar {
@@ -99,16 +100,6 @@ Vector6<S> inertial_wrench(const Model& model, const Mechanism<S>& mechanism,
            wrenches.by_moment[static_cast<std::size_t>(i)];
   }
   return out;
-}
-
-/// Visits the coordinates and controls of a motor: f(coordinate, control).
-template <typename F>
-void for_each_drive(const Model& model, int motor, const F& f) {
-  const CoordinateRange range =
-      model.coordinates_of_link(model.motors()[static_cast<std::size_t>(motor)].link);
-  for (int c = range.begin; c < range.end; ++c) {
-    f(c, model.first_control(motor) + c - range.begin);
-  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "hbar/adjoint/shooting.h"
 #include "hbar/core/error.h"
 #include "hbar/core/integrator.h"
 #include "tests/adjoint/dense_nlp.h"
@@ -190,6 +191,23 @@ TEST(AllAtOnce, EvaluatesAPointOnce) {
   EXPECT_EQ(whole.times().simulations, before + 1);
   EXPECT_EQ(whole.times().gradients, 1);
   EXPECT_EQ(whole.times().jacobians, 1);
+}
+
+TEST(AllAtOnce, RefusesAFirstGuessThatChangesChart) {
+  Problem problem = testing::spinning_problem("bdf1");
+  const ParameterSet none;
+  TrajectoryProblem spinning{
+      .simulator = Simulator(problem.simulator.model(), none, problem.simulator.options()),
+      .map = std::make_shared<IdentityDesignMap>(none),
+      .objective = Objective(squared_velocity()),
+      .constraints = {},
+      .controls = {},
+      .q0 = problem.inputs.q0,
+      .qdot0 = problem.inputs.qdot0};
+  const std::string message = testing::message_of<InvalidInput>(
+      [&] { AllAtOnce(spinning, {.formulation = Formulation::kAllAtOnce}); });
+  EXPECT_NE(message.find("change chart at t = "), std::string::npos) << message;
+  EXPECT_NO_THROW(Shooting(spinning, {}));
 }
 
 }  // namespace
