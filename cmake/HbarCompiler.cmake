@@ -1,4 +1,4 @@
-# Compiler settings shared by every floor, and the functions that declare a floor.
+# Compiler settings shared by every layer, and the functions that declare a layer.
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
@@ -47,11 +47,12 @@ if(BUILD_SHARED_LIBS)
   set(CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
 endif()
 
-# The headers of every floor are reached as "hbar/FLOOR/file.h", through one include directory.
+# The headers of every layer are reached as "hbar/LAYER/folder/file.h", through one include directory.
 set(HBAR_INCLUDE_DIR ${CMAKE_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${HBAR_INCLUDE_DIR}/hbar)
-foreach(floor core scene solvers adjoint study)
-  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${floor} ${HBAR_INCLUDE_DIR}/hbar/${floor} SYMBOLIC)
+set(HBAR_LAYERS core contact solvers adjoint)
+foreach(layer IN LISTS HBAR_LAYERS)
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${layer} ${HBAR_INCLUDE_DIR}/hbar/${layer} SYMBOLIC)
 endforeach()
 
 # An optional part has an export set of its own: who does without it needs none of its dependencies.
@@ -84,8 +85,8 @@ function(hbar_compile_in_batches)
   set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ${HBAR_UNITY} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
-# hbar_add_floor(NAME FLOOR SOURCES... ): a library hbar_NAME, exported as hbar::NAME.
-function(hbar_add_floor name)
+# hbar_add_layer(NAME SOURCES...): a library hbar_NAME, exported as hbar::NAME.
+function(hbar_add_layer name)
   add_library(hbar_${name} ${ARGN})
   add_library(hbar::${name} ALIAS hbar_${name})
   set_target_properties(hbar_${name} PROPERTIES EXPORT_NAME ${name}
@@ -99,11 +100,11 @@ function(hbar_add_floor name)
   target_include_directories(hbar_${name} PUBLIC
     $<BUILD_INTERFACE:${HBAR_INCLUDE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(hbar_${name} PRIVATE $<BUILD_INTERFACE:hbar_flags>)
-  if(name MATCHES "^(core|scene|solvers|adjoint|study)$")
+  if(name MATCHES "^(core|contact|scene|solvers|adjoint|study)$")
     hbar_compile_in_batches(hbar_${name})
   endif()
   # Eigen takes a third of most files' compilation; it is read once.
-  if(HBAR_PRECOMPILE_HEADERS AND name MATCHES "^(core|scene|solvers|suite|adjoint|study)$")
+  if(HBAR_PRECOMPILE_HEADERS AND name MATCHES "^(core|contact|scene|solvers|suite|adjoint|study)$")
     if(name STREQUAL "core")
       target_precompile_headers(hbar_core PRIVATE <Eigen/Dense> <functional> <memory> <string>
                                 <variant> <vector>)

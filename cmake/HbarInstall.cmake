@@ -1,16 +1,14 @@
-# Installation: headers under include/hbar/FLOOR, libraries, and find_package(hbar).
+# Installation: headers under include/hbar/LAYER, libraries, and find_package(hbar).
 
 set(not_built)
 get_property(left_out GLOBAL PROPERTY HBAR_LEFT_OUT)
 foreach(name IN LISTS left_out)
   list(APPEND not_built PATTERN ${name}.h EXCLUDE)
 endforeach()
-foreach(floor core scene solvers adjoint study)
-  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${floor})
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/${floor}/
-            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hbar/${floor}
-            FILES_MATCHING PATTERN "*.h" ${not_built})
-  endif()
+foreach(layer IN LISTS HBAR_LAYERS)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${layer}/
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hbar/${layer}
+          FILES_MATCHING PATTERN "*.h" ${not_built})
 endforeach()
 
 set(HBAR_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/hbar)

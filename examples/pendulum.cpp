@@ -14,10 +14,10 @@
 #include <cstdio>
 #include <utility>
 
-#include "hbar/adjoint/check_gradient.h"
-#include "hbar/adjoint/gradient.h"
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/core/model_builder.h"
+#include "hbar/adjoint/derivatives/check_gradient.h"
+#include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/core/model/model_builder.h"
 
 int main() {
   // 1. A rod of 1 m hangs on a hinge about y; its centre is half a metre below.

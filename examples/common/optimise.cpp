@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "examples/common/progress.h"
-#include "hbar/core/error.h"
-#include "hbar/scene/atomic_file.h"
-#include "hbar/solvers/diagnosis.h"
-#include "hbar/solvers/ipopt_derivatives.h"
-#include "hbar/study/solution_file.h"
-#include "hbar/study/trajectory_csv.h"
+#include "hbar/adjoint/study/solution_file.h"
+#include "hbar/adjoint/study/trajectory_csv.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/files/atomic_file.h"
+#include "hbar/solvers/nlp/diagnosis.h"
+#include "hbar/solvers/nlp/ipopt_derivatives.h"
 
 namespace hbar::example {
 namespace {

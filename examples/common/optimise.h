@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "examples/common/process.h"
-#include "hbar/adjoint/transcription.h"
-#include "hbar/solvers/ipopt.h"
+#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/solvers/nlp/ipopt.h"
 
 namespace CLI {
 class App;

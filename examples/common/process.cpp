@@ -7,7 +7,7 @@
 
 #include <cstdio>
 
-#include "hbar/core/error.h"
+#include "hbar/core/base/error.h"
 
 namespace hbar::example {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <system_error>
 
-#include "hbar/core/error.h"
+#include "hbar/core/base/error.h"
 #include "process.h"
 
 namespace hbar::example {

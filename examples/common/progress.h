@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hbar/solvers/ipopt.h"
+#include "hbar/solvers/nlp/ipopt.h"
 
 namespace hbar::example {
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "hbar/adjoint/generic_terms.h"
-#include "hbar/core/error.h"
+#include "hbar/adjoint/terms/generic_terms.h"
+#include "hbar/core/base/error.h"
 
 namespace hbar::finger_reach {
 namespace {

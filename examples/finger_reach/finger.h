@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/constraint.h"
-#include "hbar/adjoint/design_map.h"
+#include "hbar/adjoint/programs/design_map.h"
+#include "hbar/adjoint/terms/constraint.h"
 
 namespace hbar::finger_reach {
 

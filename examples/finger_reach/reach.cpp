@@ -4,11 +4,11 @@
 #include <limits>
 #include <utility>
 
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/core/dynamics.h"
-#include "hbar/core/error.h"
-#include "hbar/scene/build_model.h"
-#include "hbar/scene/read_xml.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/dynamics/dynamics.h"
+#include "hbar/core/scene/build_model.h"
+#include "hbar/core/scene/read_xml.h"
 
 namespace hbar::finger_reach {
 namespace {

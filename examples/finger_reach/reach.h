@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "finger.h"
-#include "hbar/adjoint/transcription.h"
-#include "hbar/solvers/ipopt.h"
+#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/solvers/nlp/ipopt.h"
 
 namespace hbar::finger_reach {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "hbar/solvers/sensitivity.h"
+#include "hbar/solvers/nlp/sensitivity.h"
 #include "report.h"
 
 namespace hbar::finger_reach {

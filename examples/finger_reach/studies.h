@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "examples/common/optimise.h"
-#include "hbar/study/pareto.h"
+#include "hbar/adjoint/study/pareto.h"
 #include "reach.h"
 
 namespace hbar::finger_reach {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "hbar/core/error.h"
-#include "hbar/solvers/nlopt.h"
-#include "hbar/study/identification.h"
+#include "hbar/adjoint/study/identification.h"
+#include "hbar/core/base/error.h"
+#include "hbar/solvers/nlp/nlopt.h"
 
 namespace hbar::identify {
 namespace {

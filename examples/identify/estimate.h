@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/transcription.h"
-#include "hbar/solvers/ipopt.h"
-#include "hbar/study/information.h"
-#include "hbar/study/many_starts.h"
+#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/adjoint/study/information.h"
+#include "hbar/adjoint/study/many_starts.h"
+#include "hbar/solvers/nlp/ipopt.h"
 #include "rig.h"
 
 namespace hbar::identify {

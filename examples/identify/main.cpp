@@ -14,8 +14,8 @@
 
 #include "examples/common/optimise.h"
 #include "examples/common/progress.h"
-#include "hbar/scene/atomic_file.h"
-#include "hbar/scene/text_file.h"
+#include "hbar/core/files/atomic_file.h"
+#include "hbar/core/files/text_file.h"
 #include "report.h"
 
 namespace hbar::identify {

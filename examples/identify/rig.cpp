@@ -5,10 +5,10 @@
 #include <limits>
 #include <utility>
 
-#include "hbar/adjoint/transcription.h"
-#include "hbar/core/error.h"
-#include "hbar/scene/build_model.h"
-#include "hbar/scene/read_xml.h"
+#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/scene/build_model.h"
+#include "hbar/core/scene/read_xml.h"
 
 namespace hbar::identify {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/design_map.h"
-#include "hbar/adjoint/trajectory_problem.h"
-#include "hbar/study/trajectory_csv.h"
+#include "hbar/adjoint/programs/design_map.h"
+#include "hbar/adjoint/programs/trajectory_problem.h"
+#include "hbar/adjoint/study/trajectory_csv.h"
 
 namespace hbar::identify {
 

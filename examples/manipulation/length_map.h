@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/design_map.h"
+#include "hbar/adjoint/programs/design_map.h"
 
 namespace hbar::manipulation {
 

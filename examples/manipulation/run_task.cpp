@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "examples/common/progress.h"
-#include "hbar/scene/atomic_file.h"
-#include "hbar/study/trajectory_csv.h"
+#include "hbar/adjoint/study/trajectory_csv.h"
+#include "hbar/core/files/atomic_file.h"
 
 namespace hbar::manipulation {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "examples/common/process.h"
-#include "hbar/solvers/ipopt.h"
+#include "hbar/solvers/nlp/ipopt.h"
 #include "task.h"
 
 namespace hbar::manipulation {

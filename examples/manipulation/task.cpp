@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "hbar/adjoint/generic_terms.h"
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/core/error.h"
-#include "hbar/scene/build_model.h"
-#include "hbar/scene/read_xml.h"
+#include "hbar/adjoint/terms/generic_terms.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/scene/build_model.h"
+#include "hbar/core/scene/read_xml.h"
 
 namespace hbar::manipulation {
 namespace {

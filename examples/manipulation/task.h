@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/transcription.h"
+#include "hbar/adjoint/programs/transcription.h"
 #include "length_map.h"
 
 namespace hbar::manipulation {

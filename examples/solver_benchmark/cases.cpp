@@ -1,8 +1,8 @@
 #include "cases.h"
 
 #include "families.h"
-#include "hbar/adjoint/load_problem.h"
-#include "hbar/core/error.h"
+#include "hbar/adjoint/programs/load_problem.h"
+#include "hbar/core/base/error.h"
 
 namespace hbar::solver_benchmark {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "hbar/adjoint/trajectory_system.h"
+#include "hbar/adjoint/systems/trajectory_system.h"
 
 namespace hbar::solver_benchmark {
 

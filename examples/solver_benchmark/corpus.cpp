@@ -6,10 +6,10 @@
 #include <system_error>
 
 #include "families.h"
-#include "hbar/core/error.h"
-#include "hbar/scene/atomic_file.h"
-#include "hbar/solvers/accuracy.h"
-#include "hbar/solvers/solver_suite.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/files/atomic_file.h"
+#include "hbar/solvers/linear/accuracy.h"
+#include "hbar/solvers/linear/solver_suite.h"
 #include "matrix_market.h"
 #include "measure.h"
 #include "sidecar.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hbar/solvers/linear_solver.h"
+#include "hbar/solvers/linear/linear_solver.h"
 
 namespace hbar::solver_benchmark {
 

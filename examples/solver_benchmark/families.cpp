@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "hbar/core/error.h"
-#include "hbar/core/model_builder.h"
-#include "hbar/core/nearest_name.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/base/nearest_name.h"
+#include "hbar/core/model/model_builder.h"
 
 namespace hbar::solver_benchmark {
 namespace {

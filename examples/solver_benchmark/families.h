@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hbar/adjoint/trajectory.h"
-#include "hbar/core/model.h"
+#include "hbar/adjoint/trajectory/trajectory.h"
+#include "hbar/core/model/model.h"
 
 namespace hbar::solver_benchmark {
 

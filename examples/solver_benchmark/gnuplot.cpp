@@ -10,8 +10,8 @@
 #include <sstream>
 #include <system_error>
 
-#include "hbar/core/error.h"
-#include "hbar/scene/text_file.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/files/text_file.h"
 
 namespace hbar::solver_benchmark {
 namespace {

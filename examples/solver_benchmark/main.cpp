@@ -10,10 +10,10 @@
 #include <cstdio>
 
 #include "examples/solver_benchmark/families.h"
-#include "hbar/adjoint/trajectory_system.h"
-#include "hbar/core/error.h"
-#include "hbar/solvers/accuracy.h"
-#include "hbar/solvers/solver_suite.h"
+#include "hbar/adjoint/systems/trajectory_system.h"
+#include "hbar/core/base/error.h"
+#include "hbar/solvers/linear/accuracy.h"
+#include "hbar/solvers/linear/solver_suite.h"
 
 namespace {
 

@@ -11,10 +11,10 @@
 #include <sstream>
 #include <system_error>
 
-#include "hbar/core/error.h"
-#include "hbar/scene/atomic_file.h"
-#include "hbar/scene/numbers.h"
-#include "hbar/scene/text_file.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/files/atomic_file.h"
+#include "hbar/core/files/numbers.h"
+#include "hbar/core/files/text_file.h"
 
 namespace hbar::solver_benchmark {
 namespace {

@@ -6,10 +6,10 @@
 #include <ctime>
 #include <limits>
 
-#include "hbar/core/error.h"
-#include "hbar/solvers/accuracy.h"
-#include "hbar/solvers/klu.h"
-#include "hbar/solvers/solver_suite.h"
+#include "hbar/core/base/error.h"
+#include "hbar/solvers/linear/accuracy.h"
+#include "hbar/solvers/linear/klu.h"
+#include "hbar/solvers/linear/solver_suite.h"
 
 namespace hbar::solver_benchmark {
 namespace {

@@ -1,6 +1,6 @@
 // Stands in for matrix_market.cpp where CHOLMOD was not found.
 
-#include "hbar/core/error.h"
+#include "hbar/core/base/error.h"
 #include "matrix_market.h"
 
 namespace hbar::solver_benchmark {

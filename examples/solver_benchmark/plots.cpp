@@ -7,7 +7,7 @@
 #include <map>
 
 #include "gnuplot.h"
-#include "hbar/scene/atomic_file.h"
+#include "hbar/core/files/atomic_file.h"
 
 namespace hbar::solver_benchmark {
 namespace {

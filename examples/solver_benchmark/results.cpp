@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "hbar/core/error.h"
+#include "hbar/core/base/error.h"
 
 namespace hbar::solver_benchmark {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "corpus.h"
-#include "hbar/core/error.h"
-#include "hbar/solvers/solver_suite.h"
+#include "hbar/core/base/error.h"
+#include "hbar/solvers/linear/solver_suite.h"
 
 namespace hbar::solver_benchmark {
 namespace {

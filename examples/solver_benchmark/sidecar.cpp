@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "hbar/core/error.h"
-#include "hbar/scene/text_file.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/files/text_file.h"
 
 namespace hbar::solver_benchmark {
 namespace {

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "hbar/adjoint/transcription.h"
-#include "hbar/solvers/ipopt.h"
+#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/solvers/nlp/ipopt.h"
 
 namespace hbar::swing_up {
 

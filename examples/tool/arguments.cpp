@@ -8,8 +8,8 @@
 
 #include "entries.h"
 #include "gradient_solver.h"
-#include "hbar/core/nearest_name.h"
-#include "hbar/scene/numbers.h"
+#include "hbar/core/base/nearest_name.h"
+#include "hbar/core/files/numbers.h"
 #include "labels.h"
 #include "option_values.h"
 #include "process.h"

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "hbar/adjoint/load_problem.h"
+#include "hbar/adjoint/programs/load_problem.h"
 #include "solver_arguments.h"
 
 namespace hbar::tool {

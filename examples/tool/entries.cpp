@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "hbar/scene/numbers.h"
+#include "hbar/core/files/numbers.h"
 
 namespace hbar::tool {
 

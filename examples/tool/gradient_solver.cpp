@@ -1,8 +1,8 @@
 #include "gradient_solver.h"
 
-#include "hbar/adjoint/assembled_adjoint.h"
+#include "hbar/adjoint/derivatives/assembled_adjoint.h"
 #ifdef HBAR_HAVE_SUITE
-#include "hbar/solvers/solver_suite.h"
+#include "hbar/solvers/linear/solver_suite.h"
 #endif
 
 namespace hbar::tool {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "hbar/adjoint/gradient.h"
-#include "hbar/adjoint/load_problem.h"
+#include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/programs/load_problem.h"
 
 namespace hbar::tool {
 

@@ -6,8 +6,8 @@
 #include <cctype>
 
 #include "entries.h"
-#include "hbar/scene/numbers.h"
-#include "hbar/scene/text_file.h"
+#include "hbar/core/files/numbers.h"
+#include "hbar/core/files/text_file.h"
 #include "labels.h"
 #include "process.h"
 

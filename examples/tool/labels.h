@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/load_problem.h"
+#include "hbar/adjoint/programs/load_problem.h"
 
 namespace hbar::tool {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "entries.h"
-#include "hbar/core/integrator.h"
-#include "hbar/core/nearest_name.h"
-#include "hbar/scene/numbers.h"
+#include "hbar/adjoint/trajectory/integrator.h"
+#include "hbar/core/base/nearest_name.h"
+#include "hbar/core/files/numbers.h"
 #include "process.h"
 
 namespace hbar::tool {

@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-#include "hbar/scene/atomic_file.h"
+#include "hbar/core/files/atomic_file.h"
 #include "process.h"
 
 namespace hbar::tool {

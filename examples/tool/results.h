@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/check_gradient.h"
-#include "hbar/adjoint/gradient.h"
-#include "hbar/adjoint/load_problem.h"
+#include "hbar/adjoint/derivatives/check_gradient.h"
+#include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/programs/load_problem.h"
 
 namespace hbar::tool {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "hbar/adjoint/trajectory_system.h"
+#include "hbar/adjoint/systems/trajectory_system.h"
 
 namespace hbar::tool {
 namespace {

@@ -12,9 +12,9 @@
 #include "examples/solver_benchmark/matrix_market.h"
 #include "examples/solver_benchmark/plots.h"
 #include "examples/solver_benchmark/run_benchmark.h"
-#include "hbar/core/error.h"
-#include "hbar/scene/text_file.h"
-#include "hbar/solvers/solver_suite.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/files/text_file.h"
+#include "hbar/solvers/linear/solver_suite.h"
 #include "outputs.h"
 
 namespace hbar::tool {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "hbar/core/error.h"
+#include "hbar/core/base/error.h"
 
 namespace hbar::walker {
 namespace {

@@ -1,6 +1,6 @@
 #include "leg_map.h"
 
-#include "hbar/core/error.h"
+#include "hbar/core/base/error.h"
 
 namespace hbar::walker {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "hbar/adjoint/design_map.h"
+#include "hbar/adjoint/programs/design_map.h"
 
 namespace hbar::walker {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "examples/common/progress.h"
-#include "hbar/scene/atomic_file.h"
+#include "hbar/core/files/atomic_file.h"
 #include "report.h"
 
 namespace hbar::walker {

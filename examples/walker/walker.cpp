@@ -4,11 +4,11 @@
 #include <limits>
 #include <numbers>
 
-#include "hbar/adjoint/constraint_terms.h"
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/core/error.h"
-#include "hbar/scene/build_model.h"
-#include "hbar/scene/read_xml.h"
+#include "hbar/adjoint/terms/constraint_terms.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/scene/build_model.h"
+#include "hbar/core/scene/read_xml.h"
 #include "leg_map.h"
 
 namespace hbar::walker {

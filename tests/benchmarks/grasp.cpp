@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/core/error.h"
-#include "hbar/core/model_builder.h"
-#include "hbar/core/parameter_derivatives.h"
-#include "hbar/core/surface_points.h"
+#include "hbar/adjoint/stage/parameter_derivatives.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/geometry/surface_points.h"
+#include "hbar/core/model/model_builder.h"
 #include "tests/benchmarks/workloads.h"
 
 namespace hbar::benchmarks {

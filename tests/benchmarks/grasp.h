@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "hbar/adjoint/gradient.h"
+#include "hbar/adjoint/derivatives/gradient.h"
 
 namespace hbar::benchmarks {
 

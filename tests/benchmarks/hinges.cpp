@@ -3,8 +3,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "hbar/core/error.h"
-#include "hbar/core/model_builder.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/model/model_builder.h"
 
 namespace hbar::benchmarks {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "hbar/core/model.h"
+#include "hbar/core/model/model.h"
 
 namespace hbar::benchmarks {
 

@@ -14,7 +14,7 @@
 #include <iostream>
 #include <span>
 
-#include "hbar/core/error.h"
+#include "hbar/core/base/error.h"
 #include "tests/benchmarks/ratios.h"
 #include "tests/benchmarks/second_order_ratios.h"
 #include "tests/benchmarks/system_ratios.h"

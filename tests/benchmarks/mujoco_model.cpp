@@ -4,8 +4,8 @@
 #include <array>
 #include <cstring>
 
-#include "hbar/core/error.h"
-#include "hbar/core/stage_residual.h"
+#include "hbar/adjoint/stage/stage_residual.h"
+#include "hbar/core/base/error.h"
 
 namespace hbar::benchmarks {
 namespace {

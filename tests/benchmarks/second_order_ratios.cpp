@@ -6,8 +6,8 @@
 #include <limits>
 #include <ostream>
 
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/adjoint/second_order.h"
+#include "hbar/adjoint/derivatives/second_order.h"
+#include "hbar/adjoint/terms/objective_terms.h"
 #include "tests/benchmarks/hinges.h"
 #include "tests/support/random.h"
 

@@ -8,9 +8,9 @@
 #include <limits>
 #include <ostream>
 
-#include "hbar/adjoint/assembled_adjoint.h"
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/solvers/block_substitution.h"
+#include "hbar/adjoint/derivatives/assembled_adjoint.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/solvers/linear/block_substitution.h"
 #include "tests/benchmarks/hinges.h"
 #include "tests/support/random.h"
 

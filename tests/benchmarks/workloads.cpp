@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/core/error.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/core/base/error.h"
 #include "tests/support/random.h"
 
 namespace hbar::benchmarks {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hbar/adjoint/gradient.h"
+#include "hbar/adjoint/derivatives/gradient.h"
 #include "tests/benchmarks/mujoco_model.h"
 
 namespace hbar::benchmarks {

@@ -21,7 +21,7 @@ FLAGS = ["-std=c++20", "-DEIGEN_MAX_ALIGN_BYTES=16", "-DEIGEN_MALLOC_ALREADY_ALI
 
 
 # From large to small; each is read by many headers. Eigen/Core comes last.
-BASES = ["adjoint/objective.h", "core/mechanism.h"]
+BASES = ["adjoint/terms/objective.h", "core/model/mechanism.h"]
 
 
 def eigen_folder():

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PLANTED = "tests/planted/"
-LIBRARY = ("core", "scene", "solvers", "adjoint", "study")
+LIBRARY = ("core", "contact", "solvers", "adjoint")
 CPP = (".h", ".cpp")
 
 

@@ -1,17 +1,17 @@
 #include <cmath>
 #include <cstdio>
 
-#include "hbar/adjoint/gradient.h"
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/core/model_builder.h"
-#include "hbar/scene/build_model.h"
-#include "hbar/scene/read_xml.h"
-#include "hbar/solvers/klu.h"
+#include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/core/model/model_builder.h"
+#include "hbar/core/scene/build_model.h"
+#include "hbar/core/scene/read_xml.h"
+#include "hbar/solvers/linear/klu.h"
 #ifdef STRANGER_HAS_SUITE
-#include "hbar/solvers/solver_suite.h"
+#include "hbar/solvers/linear/solver_suite.h"
 #endif
 #ifdef STRANGER_HAS_STUDY
-#include "hbar/study/many_starts.h"
+#include "hbar/adjoint/study/many_starts.h"
 #endif
 
 // What a stranger does first: a pendulum in C++ and one from a scene, a simulation, its gradient.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hbar/core/scalar.h"
+#include "hbar/core/base/scalar.h"
 
 namespace hbar::testing {
 

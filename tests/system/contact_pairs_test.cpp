@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "hbar/core/rotation.h"
+#include "hbar/core/base/rotation.h"
 #include "tests/support/numerics.h"
 #include "tests/system/contact_scenes.h"
 

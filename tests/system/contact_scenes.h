@@ -3,10 +3,10 @@
 #include <string>
 #include <utility>
 
-#include "hbar/adjoint/simulator.h"
-#include "hbar/core/contact_forces.h"
-#include "hbar/core/model_builder.h"
-#include "hbar/core/surface_points.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/contact/contact_forces.h"
+#include "hbar/core/geometry/surface_points.h"
+#include "hbar/core/model/model_builder.h"
 
 namespace hbar::testing {
 

@@ -5,12 +5,12 @@
 
 #include <numbers>
 
-#include "hbar/adjoint/check_gradient.h"
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/core/error.h"
-#include "hbar/core/rotation.h"
-#include "hbar/scene/build_model.h"
-#include "hbar/scene/read_xml.h"
+#include "hbar/adjoint/derivatives/check_gradient.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/base/rotation.h"
+#include "hbar/core/scene/build_model.h"
+#include "hbar/core/scene/read_xml.h"
 #include "tests/system/contact_scenes.h"
 
 namespace hbar {

@@ -4,17 +4,17 @@
 
 #include <fstream>
 
-#include "hbar/adjoint/assembled_adjoint.h"
-#include "hbar/adjoint/load_problem.h"
-#include "hbar/adjoint/periodic.h"
-#include "hbar/adjoint/trajectory_system.h"
-#include "hbar/scene/read_xml.h"
-#include "hbar/scene/vocabulary.h"
-#include "hbar/solvers/accuracy.h"
-#include "hbar/solvers/solver_suite.h"
-#include "tests/adjoint/input_vector.h"
-#include "tests/adjoint/periodic_problems.h"
-#include "tests/adjoint/small_problems.h"
+#include "hbar/adjoint/derivatives/assembled_adjoint.h"
+#include "hbar/adjoint/programs/load_problem.h"
+#include "hbar/adjoint/systems/periodic.h"
+#include "hbar/adjoint/systems/trajectory_system.h"
+#include "hbar/core/scene/read_xml.h"
+#include "hbar/core/scene/vocabulary.h"
+#include "hbar/solvers/linear/accuracy.h"
+#include "hbar/solvers/linear/solver_suite.h"
+#include "tests/support/input_vector.h"
+#include "tests/support/periodic_problems.h"
+#include "tests/support/small_problems.h"
 
 namespace hbar {
 namespace {

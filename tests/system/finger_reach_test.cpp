@@ -8,14 +8,14 @@
 #include "examples/finger_reach/reach.h"
 #include "examples/finger_reach/report.h"
 #include "examples/finger_reach/studies.h"
-#include "hbar/adjoint/check_terms.h"
-#include "hbar/core/error.h"
-#include "hbar/scene/build_model.h"
-#include "hbar/scene/read_xml.h"
-#include "hbar/solvers/gradient_check.h"
-#include "hbar/solvers/ipopt_derivatives.h"
-#include "hbar/solvers/sensitivity.h"
-#include "hbar/study/trajectory_csv.h"
+#include "hbar/adjoint/study/trajectory_csv.h"
+#include "hbar/adjoint/terms/check_terms.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/scene/build_model.h"
+#include "hbar/core/scene/read_xml.h"
+#include "hbar/solvers/nlp/gradient_check.h"
+#include "hbar/solvers/nlp/ipopt_derivatives.h"
+#include "hbar/solvers/nlp/sensitivity.h"
 
 namespace hbar::finger_reach {
 namespace {

@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "hbar/adjoint/constraint_terms.h"
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/adjoint/transcription.h"
-#include "hbar/core/model_builder.h"
-#include "hbar/solvers/ipopt.h"
-#include "hbar/solvers/ipopt_derivatives.h"
+#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/adjoint/terms/constraint_terms.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/core/model/model_builder.h"
+#include "hbar/solvers/nlp/ipopt.h"
+#include "hbar/solvers/nlp/ipopt_derivatives.h"
 
 namespace hbar {
 namespace {

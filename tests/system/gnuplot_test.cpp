@@ -10,9 +10,9 @@
 
 #include "examples/solver_benchmark/plots.h"
 #include "examples/solver_benchmark/run_benchmark.h"
-#include "hbar/core/error.h"
-#include "hbar/scene/atomic_file.h"
-#include "hbar/scene/text_file.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/files/atomic_file.h"
+#include "hbar/core/files/text_file.h"
 
 namespace hbar::solver_benchmark {
 namespace {

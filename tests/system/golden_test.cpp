@@ -10,10 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "hbar/adjoint/gradient.h"
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/scene/build_model.h"
-#include "hbar/scene/read_xml.h"
+#include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/core/scene/build_model.h"
+#include "hbar/core/scene/read_xml.h"
 
 namespace hbar {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "examples/identify/estimate.h"
 #include "examples/identify/report.h"
-#include "hbar/core/error.h"
-#include "hbar/solvers/ipopt_derivatives.h"
-#include "hbar/study/identification.h"
+#include "hbar/adjoint/study/identification.h"
+#include "hbar/core/base/error.h"
+#include "hbar/solvers/nlp/ipopt_derivatives.h"
 
 namespace hbar::identify {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <numeric>
 
-#include "hbar/adjoint/gradient.h"
-#include "hbar/core/rotation.h"
-#include "tests/adjoint/scenes.h"
-#include "tests/core/random_model.h"
+#include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/core/base/rotation.h"
 #include "tests/support/numerics.h"
+#include "tests/support/random_model.h"
+#include "tests/support/scenes.h"
 
 namespace hbar {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "examples/manipulation/run_task.h"
 #include "examples/manipulation/tasks.h"
-#include "hbar/core/error.h"
+#include "hbar/core/base/error.h"
 
 namespace hbar::manipulation {
 namespace {

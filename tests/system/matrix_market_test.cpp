@@ -11,7 +11,7 @@
 #include "examples/solver_benchmark/cases.h"
 #include "examples/solver_benchmark/corpus.h"
 #include "examples/solver_benchmark/measure.h"
-#include "hbar/core/error.h"
+#include "hbar/core/base/error.h"
 
 namespace hbar::solver_benchmark {
 namespace {

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "hbar/adjoint/check_gradient.h"
-#include "hbar/adjoint/objective_terms.h"
-#include "hbar/core/distance_grid.h"
-#include "hbar/core/model_builder.h"
-#include "hbar/core/surface_points.h"
-#include "tests/core/solid_meshes.h"
+#include "hbar/adjoint/derivatives/check_gradient.h"
+#include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/core/geometry/distance_grid.h"
+#include "hbar/core/geometry/surface_points.h"
+#include "hbar/core/model/model_builder.h"
+#include "tests/support/solid_meshes.h"
 
 namespace hbar {
 namespace {

@@ -9,9 +9,9 @@
 #include <memory>
 #include <sstream>
 
-#include "hbar/core/dynamics.h"
-#include "hbar/core/model_builder.h"
-#include "hbar/core/rotation.h"
+#include "hbar/core/base/rotation.h"
+#include "hbar/core/dynamics/dynamics.h"
+#include "hbar/core/model/model_builder.h"
 #include "tests/support/duals.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"

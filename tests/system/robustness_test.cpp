@@ -4,10 +4,10 @@
 
 #include <limits>
 
-#include "hbar/adjoint/gradient.h"
-#include "hbar/core/error.h"
-#include "tests/adjoint/scenes.h"
+#include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/core/base/error.h"
 #include "tests/support/numerics.h"
+#include "tests/support/scenes.h"
 
 namespace hbar {
 namespace {

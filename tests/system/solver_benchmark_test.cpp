@@ -16,7 +16,7 @@
 #include "examples/solver_benchmark/measure.h"
 #include "examples/solver_benchmark/performance_profile.h"
 #include "examples/solver_benchmark/scaling.h"
-#include "hbar/core/error.h"
+#include "hbar/core/base/error.h"
 
 namespace hbar::solver_benchmark {
 namespace {

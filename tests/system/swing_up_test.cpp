@@ -9,10 +9,10 @@
 #include <filesystem>
 
 #include "examples/swing_up/measure.h"
-#include "hbar/core/error.h"
-#include "hbar/solvers/hessian_check.h"
-#include "hbar/solvers/ipopt_derivatives.h"
-#include "hbar/study/solution_file.h"
+#include "hbar/adjoint/study/solution_file.h"
+#include "hbar/core/base/error.h"
+#include "hbar/solvers/nlp/hessian_check.h"
+#include "hbar/solvers/nlp/ipopt_derivatives.h"
 
 namespace hbar::swing_up {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <thread>
 
-#include "hbar/adjoint/gradient.h"
-#include "tests/adjoint/scenes.h"
-#include "tests/core/random_model.h"
+#include "hbar/adjoint/derivatives/gradient.h"
+#include "tests/support/random_model.h"
+#include "tests/support/scenes.h"
 
 namespace hbar {
 namespace {

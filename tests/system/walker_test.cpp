@@ -6,9 +6,9 @@
 
 #include "examples/walker/gait.h"
 #include "examples/walker/leg_map.h"
-#include "hbar/scene/build_model.h"
-#include "hbar/scene/read_xml.h"
-#include "hbar/solvers/hessian_check.h"
+#include "hbar/core/scene/build_model.h"
+#include "hbar/core/scene/read_xml.h"
+#include "hbar/solvers/nlp/hessian_check.h"
 
 namespace hbar::walker {
 namespace {

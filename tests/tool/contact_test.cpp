@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "hbar/adjoint/load_problem.h"
+#include "hbar/adjoint/programs/load_problem.h"
 #include "tests/tool/running.h"
 
 namespace hbar::tool {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "hbar/adjoint/gradient.h"
-#include "hbar/adjoint/load_problem.h"
+#include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/programs/load_problem.h"
 #include "tests/tool/running.h"
 
 namespace hbar::tool {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "hbar/solvers/solver_suite.h"
+#include "hbar/solvers/linear/solver_suite.h"
 #include "tests/tool/running.h"
 
 namespace hbar::tool {

@@ -1,0 +1,36 @@
+#include "hbar/adjoint/derivatives/assembled_adjoint.h"
+
+#include <utility>
+
+#include "hbar/adjoint/derivatives/stage_weights.h"
+
+namespace hbar {
+
+AssembledAdjoint::AssembledAdjoint(Simulator& simulator, solvers::SolverFactory factory)
+    : simulator_(simulator), system_(simulator, std::move(factory)) {}
+
+Gradient AssembledAdjoint::pull_back(const Trajectory& trajectory,
+                                     const TrajectoryPartials& partials) {
+  const StageWeights weights = stage_weights(simulator_, trajectory, partials);
+  const Eigen::Index stages = weights.q_bar.cols() - 1;
+  const Linearization& system = system_.update(trajectory);
+  const Eigen::VectorXd y_bar = weights.q_bar.rightCols(stages).reshaped();
+  z_bar_.resize(y_bar.size());
+  system_.solver().solve_transposed(y_bar, z_bar_);
+  Gradient out;
+  out.p = weights.p - system.dg_dp.transpose() * z_bar_;
+  out.u = weights.u;
+  out.u.reshaped() -= system.dg_du.transpose() * z_bar_;
+  out.q0 = weights.q_bar.col(0) - system.dg_dq0.matrix().transpose() * z_bar_;
+  out.qdot0 = weights.qdot0 - system.dg_dqdot0.matrix().transpose() * z_bar_;
+  return out;
+}
+
+Gradient AssembledAdjoint::gradient(const Trajectory& trajectory, const Objective& objective) {
+  const TrajectoryValues values = simulator_.values(trajectory);
+  Gradient out = pull_back(trajectory, objective.partials(values));
+  out.value = objective.value(values);
+  return out;
+}
+
+}  // namespace hbar

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "hbar/adjoint/derivatives/factorized_linearization.h"
+#include "hbar/adjoint/derivatives/gradient.h"
+
+namespace hbar {
+
+/// The gradient (20), (21) by its matrices: H̄ᵀ z̄ = ȳ with any sparse solver, then
+/// ∂Ψ/∂p − z̄ᵀ ∂ḡ/∂p. What AdjointSweep does without them, for comparing solvers and as a witness.
+///
+/// Holds its workspace for one simulator and belongs to one thread at a time.
+class AssembledAdjoint {
+ public:
+  /// @param factory  of the solver for H̄; null means block substitution
+  explicit AssembledAdjoint(Simulator& simulator, solvers::SolverFactory factory = nullptr);
+
+  /// @param trajectory  whole, of this simulator
+  /// @throws NumericalFailure if H̄ is singular or the residual is too large
+  [[nodiscard]] Gradient gradient(const Trajectory& trajectory, const Objective& objective);
+
+  /// The same from given partials (the value is left at 0).
+  [[nodiscard]] Gradient pull_back(const Trajectory& trajectory,
+                                   const TrajectoryPartials& partials);
+
+  /// z̄ of the last call.                                                        [m]
+  [[nodiscard]] const Eigen::VectorXd& adjoint() const { return z_bar_; }
+  /// The system of the last call.
+  [[nodiscard]] const Linearization& linearization() const { return system_.linearization(); }
+  [[nodiscard]] const solvers::LinearSolver& solver() const { return system_.solver(); }
+
+ private:
+  Simulator& simulator_;
+  FactorizedLinearization system_;
+  Eigen::VectorXd z_bar_;
+};
+
+}  // namespace hbar

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "hbar/adjoint/terms/objective.h"
+
+namespace hbar {
+
+/// dΨ/d(p, u, q₀, q̇₀), shaped like Inputs, and Ψ itself.
+struct Gradient {
+  double value = 0.0;     ///< Ψ
+  Eigen::VectorXd p;      ///<                                            [parameters]
+  Eigen::MatrixXd u;      ///<                                            [controls x steps]
+  Eigen::VectorXd q0;     ///<                                            [dof]
+  Eigen::VectorXd qdot0;  ///<                                            [dof]
+};
+
+/// The adjoint of a trajectory, swept backward stage by stage: H̄ᵀ z̄ = ȳ (20) by block substitution
+/// and the contraction (21), without forming H̄ or ∂ḡ/∂p.
+///
+/// Each stage's block system H_ssᵀ z = y is solved with the factors that Newton left there, a step
+/// away from the solution, and refined against the exact block until its residual is at rounding;
+/// where that does not converge, or factors were not kept, the block is factorised anew.
+///
+/// Holds its workspace for one simulator and belongs to one thread at a time.
+class AdjointSweep {
+ public:
+  explicit AdjointSweep(Simulator& simulator);
+  ~AdjointSweep();
+  AdjointSweep(AdjointSweep&&) noexcept;
+  AdjointSweep& operator=(AdjointSweep&&) noexcept;
+
+  /// @param trajectory  whole, of this simulator
+  /// @throws NumericalFailure if a stage's block is singular or its residual stays above 1e-11
+  [[nodiscard]] Gradient gradient(const Trajectory& trajectory, const Objective& objective);
+
+  /// The same from given partials (the value is left at 0).
+  [[nodiscard]] Gradient pull_back(const Trajectory& trajectory,
+                                   const TrajectoryPartials& partials);
+
+  /// z̄ of the last sweep: how Ψ answers to a change of each stage's residual.
+  /// [dof x stages − 1]
+  [[nodiscard]] const Eigen::MatrixXd& adjoint() const;
+  /// Largest relative residual ‖y − H_ssᵀ z‖ / (‖y‖ + …) of the last sweep's stages.
+  [[nodiscard]] double worst_residual() const;
+  /// How many stages of the last sweep had to be factorised anew.
+  [[nodiscard]] int refactorized() const;
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> work_;
+};
+
+/// dΨ of a trajectory: one AdjointSweep.
+[[nodiscard]] Gradient gradient(Simulator& simulator, const Trajectory& trajectory,
+                                const Objective& objective);
+
+}  // namespace hbar

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "hbar/adjoint/derivatives/block_matrix.h"
+#include "hbar/adjoint/trajectory/flat_stencil.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+
+namespace hbar {
+
+/// The trajectory's linear system: ḡ(q̄, p, u, q₀, q̇₀) = 0 differentiated, as compressed sparse
+/// columns. Row block s − 1 belongs to stage s; so does column block s − 1 of H.
+struct Linearization {
+  BlockMatrix H;                ///< H̄ = ∂ḡ/∂q̄, block lower triangular     [m x m]
+  solvers::SparseMatrix dg_dp;  ///< ∂ḡ/∂p                                  [m x parameters]
+  solvers::SparseMatrix dg_du;  ///< ∂ḡ/∂u, columns step by step            [m x controls·steps]
+  BlockMatrix dg_dq0;           ///< ∂ḡ/∂q₀                                 [m x dof]
+  BlockMatrix dg_dqdot0;        ///< ∂ḡ/∂q̇₀                                 [m x dof]
+  std::vector<int> block_sizes;  ///< dof, once per stage                    [stages − 1]
+};
+
+/// Assembles Linearizations of one simulator's trajectories. Patterns are laid out once per
+/// timeline (in practice: once); then only values are overwritten.
+class Linearizer {
+ public:
+  explicit Linearizer(Simulator& simulator);
+  ~Linearizer();
+  Linearizer(Linearizer&&) noexcept;
+  Linearizer& operator=(Linearizer&&) noexcept;
+
+  /// @param trajectory  whole, of this simulator
+  /// @returns  valid until the next call
+  const Linearization& linearize(const Trajectory& trajectory);
+
+  /// How often patterns were laid out.
+  [[nodiscard]] int pattern_count() const;
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> work_;
+};
+
+}  // namespace hbar

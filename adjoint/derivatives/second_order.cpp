@@ -1,0 +1,303 @@
+#include "hbar/adjoint/derivatives/second_order.h"
+
+#include <utility>
+
+#include "hbar/adjoint/outputs/instant_outputs.h"
+#include "hbar/adjoint/stage/parameter_derivatives.h"
+#include "hbar/core/base/dual_vectors.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/model/drives.h"
+
+namespace hbar {
+namespace {
+
+void set_slope(VectorX<Dual>& duals, const Eigen::VectorXd& slope) {
+  for (Eigen::Index i = 0; i < duals.size(); ++i) {
+    duals[i].slope = slope[i];
+  }
+}
+
+void require_shape(const Inputs& direction, const Inputs& inputs) {
+  const auto same = [](const auto& a, const auto& b) {
+    return a.rows() == b.rows() && a.cols() == b.cols();
+  };
+  if (!same(direction.p, inputs.p) || !same(direction.u, inputs.u) ||
+      !same(direction.q0, inputs.q0) || !same(direction.qdot0, inputs.qdot0)) {
+    throw InvalidInput(concat("second order: the direction has ", direction.p.size(),
+                              " parameters, ", direction.u.rows(), " x ", direction.u.cols(),
+                              " controls and ", direction.q0.size(), " + ", direction.qdot0.size(),
+                              " initial values; expected ", inputs.p.size(), ", ", inputs.u.rows(),
+                              " x ", inputs.u.cols(), ", ", inputs.q0.size(), " + ",
+                              inputs.qdot0.size()));
+  }
+}
+
+}  // namespace
+
+struct SecondOrderSweep::Workspace {
+  explicit Workspace(Simulator& s)
+      : simulator(s),
+        adjoint(s),
+        mechanism(nominal_mechanism<double>(s.model())),
+        stage(s.model()),
+        point(s.model()),
+        block(s.model().dof(), s.model().dof()),
+        g(s.model().dof()),
+        history(s.model()),
+        mechanism_d(nominal_mechanism<Dual>(s.model())),
+        stage_d(s.model()),
+        point_d(s.model()),
+        outputs(s.model(), s.options().measurements),
+        rows(outputs.zero_rows()),
+        g_d(s.model().dof()),
+        qdot_past(s.model().dof()),
+        a_past(s.model().dof()),
+        y_start{VectorX<Dual>(s.model().dof()), VectorX<Dual>(s.model().dof())},
+        delta(s.model().dof()) {}
+
+  [[nodiscard]] const Trajectory& trajectory() const { return *trajectory_; }
+  void factorize();
+  void set_stage(int s);
+  void read_values(int k);
+  void add_outputs(int k);
+  void solve_adjoint(int s);
+  void sweep_stage(int s);
+
+  Simulator& simulator;
+  AdjointSweep adjoint;
+  const Trajectory* trajectory_ = nullptr;
+  TrajectoryPartials weights{TrajectoryValues{}};
+  Gradient gradient;
+  Mechanism<double> mechanism;
+  StageResidual<double> stage;
+  StagePoint<double> point;
+  Eigen::MatrixXd block;
+  Eigen::VectorXd g;
+  std::vector<Eigen::PartialPivLU<Eigen::MatrixXd>> factors;  // of H_ss, per stage
+
+  History history;
+  Mechanism<Dual> mechanism_d;
+  StageResidual<Dual> stage_d;
+  StagePoint<Dual> point_d;
+  InstantOutputs<Dual> outputs;
+  OutputRows<Dual> rows;
+  VectorX<Dual> p_d;
+  MatrixX<Dual> u_d, q_d, qdot_d;  // per step; per stage
+  VectorX<Dual> g_d, qdot_past, a_past, y, z, y_qdot, y_a;
+  StepStart<Dual> y_start;
+  Eigen::VectorXd delta;
+  ValueTangent tangent;
+  MatrixX<Dual> v_weights, tactile_weights, measured_weights, q_bar, qdot_bar, u_bar;
+  VectorX<Dual> p_bar;
+  Gradient out;
+};
+
+/// Factors of every stage's block at the trajectory itself, so that no solve needs refinement.
+void SecondOrderSweep::Workspace::factorize() {
+  const int last = trajectory().timeline.last_stage();
+  factors.resize(static_cast<std::size_t>(last) + 1);
+  apply_parameters<double>(simulator.model(), simulator.parameters(), trajectory().inputs.p,
+                           mechanism);
+  for (int s = 1; s <= last; ++s) {
+    simulator.set_point(trajectory(), s, point);
+    stage.linearize(mechanism, point, g);
+    stage.newton_matrix(block);
+    factors[static_cast<std::size_t>(s)].compute(block);
+  }
+}
+
+/// The stage's point with the slopes that are known so far.
+void SecondOrderSweep::Workspace::set_stage(int s) {
+  const Stage& row = trajectory().timeline.stage(s);
+  history.gather<Dual>(trajectory(), q_d, qdot_d, s, qdot_past, a_past, point_d.start);
+  point_d.rate = row.rate;
+  point_d.u = u_d.col(row.step);
+  point_d.q = q_d.col(s);
+  History::set_rates<Dual>(qdot_past, a_past, point_d);
+}
+
+/// Slopes of the values at step k.
+void SecondOrderSweep::Workspace::read_values(int k) {
+  const int s = trajectory().timeline.step_end(k);
+  tangent.q.col(k) = slopes_of(q_d.col(s));
+  tangent.qdot.col(k) = slopes_of(qdot_d.col(s));
+  if (outputs.empty()) {
+    return;
+  }
+  outputs.read(mechanism_d, outputs.motion_at(mechanism_d, q_d.col(s), qdot_d.col(s)), q_d.col(s),
+               qdot_d.col(s), u_d.col(measured_step(k)), rows);
+  tangent.v.col(k) = slopes_of(rows.v);
+  tangent.tactile.col(k) = slopes_of(rows.tactile);
+  tangent.measured.col(k) = slopes_of(rows.measured);
+}
+
+/// Brings the outputs' weights at step k to what they depend on.
+void SecondOrderSweep::Workspace::add_outputs(int k) {
+  if (outputs.empty()) {
+    return;
+  }
+  const int s = trajectory().timeline.step_end(k);
+  const int step = measured_step(k);
+  rows = {v_weights.col(k), tactile_weights.col(k), measured_weights.col(k)};
+  outputs.pull_back(mechanism_d, simulator.parameters(), p_d,
+                    outputs.motion_at(mechanism_d, q_d.col(s), qdot_d.col(s)), q_d.col(s),
+                    qdot_d.col(s), u_d.col(step), rows, q_bar.col(s), qdot_bar.col(s),
+                    u_bar.col(step), p_bar);
+}
+
+/// δz of H_ssᵀ δz = δy − (δH_ss)ᵀ z.
+void SecondOrderSweep::Workspace::solve_adjoint(int s) {
+  const double rate = point_d.rate;
+  stage_d.pull_back(z);
+  for (Eigen::Index i = 0; i < delta.size(); ++i) {
+    delta[i] =
+        (y[i] - stage_d.by_q()[i] - rate * stage_d.by_qdot()[i] - (rate * rate) * stage_d.by_a()[i])
+            .slope;
+  }
+  delta = factors[static_cast<std::size_t>(s)].transpose().solve(delta).eval();
+  set_slope(z, delta);
+  stage_d.pull_back(z);
+}
+
+void SecondOrderSweep::Workspace::sweep_stage(int s) {
+  set_stage(s);
+  stage_d.linearize(mechanism_d, point_d, g_d);
+  const double rate = point_d.rate;
+  y = q_bar.col(s) + rate * qdot_bar.col(s);
+  z = adjoint.adjoint().col(s - 1).cast<Dual>();
+  solve_adjoint(s);
+  const JointForces<Dual>& forces = stage_d.joint_forces();
+  const double c = point_d.c();
+  y_a = -stage_d.by_a();
+  y_qdot = qdot_bar.col(s) - stage_d.by_qdot() + rate * y_a;
+  y_start.q = c * z.cwiseProduct(forces.by_start_q);
+  y_start.qdot = c * z.cwiseProduct(forces.by_start_qdot);
+  history.scatter<Dual>(trajectory(), q_d, qdot_d, s, y_qdot, y_a, y_start, q_bar, qdot_bar);
+  const int step = trajectory().timeline.stage(s).step;
+  for_each_drive(simulator.model(), [&](int k, int control) {
+    u_bar(control, step) += c * z[k] * forces.by_u[control];
+  });
+  add_parameter_gradient<Dual>(mechanism_d, simulator.parameters(), p_d, stage_d, point_d, z, -1.0,
+                               p_bar);
+}
+
+SecondOrderSweep::SecondOrderSweep(Simulator& simulator)
+    : work_(std::make_unique<Workspace>(simulator)) {}
+SecondOrderSweep::~SecondOrderSweep() = default;
+SecondOrderSweep::SecondOrderSweep(SecondOrderSweep&&) noexcept = default;
+SecondOrderSweep& SecondOrderSweep::operator=(SecondOrderSweep&&) noexcept = default;
+
+const Gradient& SecondOrderSweep::set_point(const Trajectory& trajectory,
+                                            const TrajectoryPartials& weights) {
+  Workspace& w = *work_;
+  w.trajectory_ = &trajectory;
+  w.weights = weights;
+  w.gradient = w.adjoint.pull_back(trajectory, weights);
+  w.factorize();
+  return w.gradient;
+}
+
+const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
+  Workspace& w = *work_;
+  const Trajectory& trajectory = w.trajectory();
+  require_shape(direction, trajectory.inputs);
+  w.p_d = dual_vector(trajectory.inputs.p, direction.p);
+  apply_parameters<Dual>(w.simulator.model(), w.simulator.parameters(), w.p_d, w.mechanism_d);
+  w.u_d = dual_matrix(trajectory.inputs.u, direction.u);
+  w.q_d = trajectory.q.cast<Dual>();
+  w.qdot_d = trajectory.qdot.cast<Dual>();
+  w.q_d.col(0) = dual_vector(trajectory.q.col(0), direction.q0);
+  w.qdot_d.col(0) = dual_vector(trajectory.qdot.col(0), direction.qdot0);
+  for (int s = 1; s <= trajectory.timeline.last_stage(); ++s) {
+    w.set_stage(s);
+    w.stage_d.residual(w.mechanism_d, w.point_d, w.g_d);
+    w.delta = slopes_of(w.g_d);
+    w.delta = -w.factors[static_cast<std::size_t>(s)].solve(w.delta).eval();
+    for (Eigen::Index i = 0; i < w.delta.size(); ++i) {
+      w.q_d(i, s).slope = w.delta[i];
+    }
+    w.point_d.q = w.q_d.col(s);
+    History::set_rates<Dual>(w.qdot_past, w.a_past, w.point_d);
+    w.qdot_d.col(s) = w.point_d.qdot;
+  }
+  const int steps = trajectory.step_count();
+  const Model& model = w.simulator.model();
+  w.tangent.q.resize(model.dof(), steps + 1);
+  w.tangent.qdot.resize(model.dof(), steps + 1);
+  w.tangent.v.resize(model.variable_count(), steps + 1);
+  w.tangent.tactile.resize(model.tactile_count(), steps + 1);
+  w.tangent.measured.resize(w.simulator.measured_count(), steps + 1);
+  w.tangent.u = direction.u;
+  w.tangent.p = direction.p;
+  for (int k = 0; k <= steps; ++k) {
+    w.read_values(k);
+  }
+  return w.tangent;
+}
+
+const Gradient& SecondOrderSweep::product(const TrajectoryPartials* weights_tangent) {
+  Workspace& w = *work_;
+  const Trajectory& trajectory = w.trajectory();
+  const TrajectoryPartials& y = w.weights;
+  const TrajectoryPartials still(w.tangent);
+  const TrajectoryPartials& dy = weights_tangent != nullptr ? *weights_tangent : still;
+  const Timeline& timeline = trajectory.timeline;
+  w.q_bar.setZero(trajectory.q.rows(), timeline.stage_count());
+  w.qdot_bar.setZero(trajectory.q.rows(), timeline.stage_count());
+  for (int k = 0; k <= timeline.step_count(); ++k) {
+    const int s = timeline.step_end(k);
+    w.q_bar.col(s) += dual_vector(y.q.col(k), dy.q.col(k));
+    w.qdot_bar.col(s) += dual_vector(y.qdot.col(k), dy.qdot.col(k));
+  }
+  w.v_weights = dual_matrix(y.v, dy.v);
+  w.tactile_weights = dual_matrix(y.tactile, dy.tactile);
+  w.measured_weights = dual_matrix(y.measured, dy.measured);
+  w.u_bar = dual_matrix(y.u, dy.u);
+  w.p_bar = dual_vector(y.p, dy.p);
+  int k = timeline.step_count();
+  for (int s = timeline.last_stage(); s > 0; --s) {
+    if (s == timeline.step_end(k)) {
+      w.add_outputs(k);
+      --k;
+    }
+    w.sweep_stage(s);
+  }
+  w.add_outputs(0);
+  w.out.p = slopes_of(w.p_bar);
+  w.out.u = slopes_of(w.u_bar);
+  w.out.q0 = slopes_of(w.q_bar.col(0));
+  w.out.qdot0 = slopes_of(w.qdot_bar.col(0));
+  return w.out;
+}
+
+HessianProduct::HessianProduct(Simulator& simulator, Objective objective)
+    : simulator_(simulator),
+      objective_(std::move(objective)),
+      sweep_(simulator),
+      adjoint_(simulator) {}
+
+const Gradient& HessianProduct::set_point(const Trajectory& trajectory) {
+  trajectory_ = &trajectory;
+  values_ = simulator_.values(trajectory);
+  places_ = objective_.second_places(values_);
+  second_ = objective_.second_partials(values_);
+  gradient_ = sweep_.set_point(trajectory, objective_.partials(values_));
+  gradient_.value = objective_.value(values_);
+  return gradient_;
+}
+
+const Gradient& HessianProduct::along(const Inputs& direction, solvers::HessianKind kind) {
+  if (kind == solvers::HessianKind::kLimitedMemory) {
+    throw InvalidInput("second order: a limited-memory Hessian is an optimiser's own");
+  }
+  const ValueTangent& tangent = sweep_.push_forward(direction);
+  TrajectoryPartials moved(values_);
+  add_second_order(places_, second_, tangent, moved);
+  product_ = kind == solvers::HessianKind::kExact ? sweep_.product(&moved)
+                                                  : adjoint_.pull_back(*trajectory_, moved);
+  product_.value = 0.5 * (product_.p.dot(direction.p) + product_.u.cwiseProduct(direction.u).sum() +
+                          product_.q0.dot(direction.q0) + product_.qdot0.dot(direction.qdot0));
+  return product_;
+}
+
+}  // namespace hbar

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include "hbar/adjoint/outputs/instant_outputs.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+
+namespace hbar {
+
+/// Second derivatives of  z·g(q, q̇, a, start, u, p) + y·outputs(q, q̇, u, p)  at one stage,
+/// contracted with z and y before anything is stored: a dual number runs through the transposed
+/// derivative once per coordinate, rate and design variable. By a, start and u there is no second
+/// derivative but the mixed ones that are listed.
+///
+/// Parameters move with design variables d along a constant ∂p/∂d. Holds its workspace for one
+/// simulator and belongs to one thread at a time.
+class StageHessian {
+ public:
+  /// @param simulator  must outlive this object
+  /// @param designs    number of design variables
+  StageHessian(Simulator& simulator, Eigen::Index designs);
+
+  /// Takes parameters and how they move.
+  ///
+  /// @param map_jacobian  ∂p/∂d                                    [parameters x designs]
+  void set_parameters(const Eigen::VectorXd& p, const Eigen::MatrixXd& map_jacobian);
+
+  /// Evaluates at a stage of a trajectory that has the parameters.
+  ///
+  /// @param z  weights on g                                                      [dof]
+  /// @param y  weights on the outputs that are read at the stage's end; null: none are
+  void evaluate(const Trajectory& trajectory, int stage, const Eigen::VectorXd& z,
+                const OutputRows<double>* y);
+  /// The same of the initial state, where there are outputs alone.
+  void evaluate_start(const Trajectory& trajectory, const OutputRows<double>& y);
+
+  // Results of the last evaluation.
+  Eigen::MatrixXd qq, qv, qa, vv;        ///< by q, q̇ and a                    [dof x dof]
+  Eigen::MatrixXd uq, uv;                ///< of outputs                       [controls x dof]
+  Eigen::MatrixXd dq, dv, da, dsq, dsv;  ///< by d and q, q̇, a, start          [designs x dof]
+  Eigen::MatrixXd du;                    ///<                                  [designs x controls]
+  Eigen::MatrixXd dd;                    ///<                                  [designs x designs]
+  Eigen::VectorXd by_p;  ///< first derivative by p, if there are designs        [parameters]
+
+ private:
+  void set_zero();
+  void evaluate_design(Eigen::Index i, bool with_stage);
+  void linearize_stage(const Mechanism<Dual>& mechanism);
+  void linearize_outputs(const Mechanism<Dual>& mechanism, const VectorX<Dual>& p);
+
+  Simulator& simulator_;
+  StageResidual<Dual> stage_;
+  InstantOutputs<Dual> outputs_;
+  StagePoint<double> at_;
+  StagePoint<Dual> point_;
+  Mechanism<Dual> still_;                // parameters that do not move
+  std::vector<Mechanism<Dual>> moving_;  // along each design variable
+  std::vector<VectorX<Dual>> moving_p_;
+  VectorX<Dual> still_p_;
+  Eigen::MatrixXd map_jacobian_;
+  VectorX<Dual> z_;
+  OutputRows<Dual> y_;
+  bool has_outputs_ = false;
+  VectorX<Dual> g_, by_q_, by_qdot_, by_u_, by_p_;
+};
+
+}  // namespace hbar

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "hbar/adjoint/terms/objective.h"
+
+namespace hbar {
+
+/// ∂Ψ/∂q̄ with rates, variables, sensor readings and measurements replaced by what they depend on: ȳ
+/// of (20), and the direct shares of q̇₀, p and u.
+struct StageWeights {
+  Eigen::MatrixXd q_bar;  ///< per stage, column 0 is q₀      [dof x stages]
+  Eigen::VectorXd qdot0;  ///<                                [dof]
+  Eigen::VectorXd p;      ///<                                [parameters]
+  Eigen::MatrixXd u;      ///<                                [controls x steps]
+};
+
+/// @param trajectory  whole, of this simulator
+[[nodiscard]] StageWeights stage_weights(Simulator& simulator, const Trajectory& trajectory,
+                                         const TrajectoryPartials& partials);
+
+/// Adds (∂q̇_s/∂q̄)ᵀ y to the stages that q̇_s looks back on; for stage 0 to `out.qdot0`.
+///
+/// @param y  [dof]
+void add_rate_weights(const Model& model, const Trajectory& trajectory, int stage,
+                      const Eigen::VectorXd& y, StageWeights& out);
+
+}  // namespace hbar

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "hbar/adjoint/derivatives/factorized_linearization.h"
+#include "hbar/adjoint/terms/objective.h"
+
+namespace hbar {
+
+/// Directions in which inputs move, one per column.
+struct Directions {
+  Eigen::MatrixXd p;      ///<                                        [parameters x count]
+  Eigen::MatrixXd u;      ///< step by step                           [controls·steps x count]
+  Eigen::MatrixXd q0;     ///<                                        [dof x count]
+  Eigen::MatrixXd qdot0;  ///<                                        [dof x count]
+
+  /// `count` directions, all zero.
+  [[nodiscard]] static Directions zero(const Simulator& simulator, Eigen::Index count);
+  [[nodiscard]] Eigen::Index count() const { return p.cols(); }
+};
+
+/// How the trajectory moves along directions: column by column, time step by time step.
+struct Tangents {
+  Eigen::MatrixXd q;         ///< rows k·dof … are step k's               [dof·(N+1) x count]
+  Eigen::MatrixXd qdot;      ///<                                         [dof·(N+1) x count]
+  Eigen::MatrixXd v;         ///< auxiliary variables                     [variables·(N+1) x count]
+  Eigen::MatrixXd tactile;   ///< sensor readings                     [readings·(N+1) x count]
+  Eigen::MatrixXd measured;  ///< measurements                        [measured·(N+1) x count]
+};
+
+/// Forward sensitivities H̄ δq̄ = −(∂ḡ/∂p) δp − … by the matrices of Linearizer and any solver.
+///
+/// Holds its workspace for one simulator and belongs to one thread at a time.
+class TangentSweep {
+ public:
+  /// @param factory  of the solver for H̄; null means block substitution
+  explicit TangentSweep(Simulator& simulator, solvers::SolverFactory factory = nullptr);
+
+  /// @param trajectory  whole, of this simulator
+  /// @throws NumericalFailure if H̄ is singular or a residual is too large
+  [[nodiscard]] Tangents push_forward(const Trajectory& trajectory, const Directions& directions);
+
+  /// The system that was assembled last.
+  [[nodiscard]] const Linearization& linearization() const { return system_.linearization(); }
+  /// −∂ḡ·directions of the last call: what H̄ was solved with.  [m x count]
+  [[nodiscard]] const Eigen::MatrixXd& right_hand_sides() const { return rhs_; }
+  [[nodiscard]] const solvers::LinearSolver& solver() const { return system_.solver(); }
+
+ private:
+  Simulator& simulator_;
+  FactorizedLinearization system_;
+  Eigen::MatrixXd rhs_;
+};
+
+/// dΨ along one direction (column `i` of tangents and directions).
+[[nodiscard]] double directional_derivative(const TrajectoryPartials& partials,
+                                            const Tangents& tangents, const Directions& directions,
+                                            Eigen::Index i);
+
+/// Σ over the members of Tangents of ‖partials‖ ‖tangents‖: what rounding in dΨ is measured by.
+[[nodiscard]] double norm_product(const TrajectoryPartials& partials, const Tangents& tangents);
+
+}  // namespace hbar

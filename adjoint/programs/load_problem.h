@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "hbar/adjoint/terms/problem.h"
+#include "hbar/core/base/error.h"
+
+namespace hbar {
+
+/// Which design parameters of a scene are free.
+enum class ParameterChoice {
+  kMask,  ///< those that the links' design_params select
+  kAll,
+  kNone,
+  kNamed  ///< LoadOptions::parameter_names
+};
+
+/// An objective that needs no numbers of its own.
+enum class ObjectiveChoice {
+  kVariables,      ///< ½ Σ_{k=1…N} ‖v_k‖²
+  kFinalPosition,  ///< ½ ‖q_N‖²
+  kTactile         ///< ½ Σ_{k=1…N} ‖tactile_k‖²
+};
+
+/// What to take otherwise than a scene says, or than is usual where a scene cannot say it.
+struct LoadOptions {
+  std::optional<std::string> integrator;  ///< else the scene's
+  std::optional<double> h;                ///< time step, time, > 0; else the scene's
+  int steps = 100;                        ///< N ≥ 1
+  std::optional<double> newton_tol;       ///< on ‖g‖₂, > 0; else the scene's
+  /// Of the gradient, a name of solvers/linear/solver_suite.h, "auto" or "sweep"; else the scene's.
+  std::optional<std::string> linear_solver;
+  ParameterChoice parameters = ParameterChoice::kMask;
+  std::vector<std::string> parameter_names;  ///< as ParameterSet::named; kNamed only
+  /// Else kVariables where the scene has an end effector, and kFinalPosition where it has none.
+  std::optional<ObjectiveChoice> objective;
+  const std::atomic<bool>* stop = nullptr;  ///< see SimulationOptions
+};
+
+/// A problem made from a scene file, at nominal inputs: controls and initial state zero.
+struct LoadedProblem {
+  Problem problem;
+  ObjectiveChoice objective;  ///< the one that was taken
+  std::string
+      linear_solver;  ///< of the gradient: "sweep" is AdjointSweep, others AssembledAdjoint's
+  std::vector<std::string> notices;          ///< what the person should know, each `file:line: …`
+  std::vector<std::filesystem::path> files;  ///< read for it, the scene first; each once
+};
+
+/// An option that does not suit the scene, whereas the scene itself is right.
+class InvalidOption : public InvalidInput {
+ public:
+  using InvalidInput::InvalidInput;
+};
+
+/// Reads a scene file, builds its model and makes a problem of it.
+///
+/// @throws IoError        if the scene or a file it names cannot be read
+/// @throws InvalidInput   if the scene is not right; the message begins with its file name
+/// @throws InvalidOption  if the options are not, or do not suit it
+[[nodiscard]] LoadedProblem load_problem(const std::filesystem::path& scene,
+                                         const LoadOptions& options = {});
+
+}  // namespace hbar

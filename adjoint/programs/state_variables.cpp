@@ -1,0 +1,62 @@
+#include "hbar/adjoint/programs/state_variables.h"
+
+#include "hbar/core/base/error.h"
+
+namespace hbar {
+
+Eigen::MatrixXd guess_states(TrajectoryProblem& problem, const InputVariables& head,
+                             const Eigen::MatrixXd& q_guess) {
+  Simulator& simulator = problem.simulator;
+  const Eigen::Index dof = simulator.model().dof();
+  const int steps = simulator.options().steps;
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(2 * dof, steps + 1);
+  if (q_guess.size() > 0) {
+    if (q_guess.rows() != dof || q_guess.cols() != steps + 1 || !q_guess.allFinite()) {
+      throw InvalidInput(concat("transcription: q_guess is ", q_guess.rows(), " x ", q_guess.cols(),
+                                "; it must be ", dof, " x ", steps + 1, " and finite"));
+    }
+    out.topRows(dof) = q_guess;
+    out.bottomRows(dof).rightCols(steps) =
+        (q_guess.rightCols(steps) - q_guess.leftCols(steps)) / simulator.options().h;
+    out.bottomRows(dof).col(0) = out.bottomRows(dof).col(1);
+    return out;
+  }
+  const Rollout rollout = simulator.rollout(head.inputs(head.variables().start));
+  const Trajectory& reached = rollout.partial();
+  if (!reached.chart_switches.empty()) {
+    const ChartSwitch& first = reached.chart_switches.front();
+    const Model& model = simulator.model();
+    throw InvalidInput(
+        concat("transcription: in the first guess exponential coordinates of '",
+               model.coordinate_name(model.tree().node(first.node).coordinates.begin),
+               "' change chart at t = ", reached.timeline.stage(first.stage).time,
+               ", where states are variables; give a q_guess that stays within one turn, use "
+               "shooting, or Euler angles"));
+  }
+  const int done = reached.step_count();
+  for (int k = 0; k <= done; ++k) {
+    out.col(k) << reached.q_at_step(k), reached.qdot_at_step(k);
+  }
+  out.topRows(dof).rightCols(steps - done).colwise() = out.topRows(dof).col(done).eval();
+  return out;
+}
+
+std::vector<std::string> state_names(const Model& model) {
+  std::vector<std::string> out;
+  for (const char* what : {"", " rate"}) {
+    for (int c = 0; c < model.dof(); ++c) {
+      out.push_back(concat(model.coordinate_name(c), what));
+    }
+  }
+  return out;
+}
+
+Eigen::VectorXd state_scale(const TrajectoryProblem& problem) {
+  const Eigen::Index dof = problem.simulator.model().dof();
+  Eigen::VectorXd out(2 * dof);
+  out << filled(problem.q_scale, dof, 1.0, "q_scale"),
+      filled(problem.qdot_scale, dof, 1.0, "qdot_scale");
+  return out;
+}
+
+}  // namespace hbar

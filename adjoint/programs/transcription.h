@@ -1,0 +1,169 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "hbar/adjoint/programs/entry_plan.h"
+#include "hbar/adjoint/programs/input_variables.h"
+
+namespace hbar {
+
+/// The three ways to make a nonlinear program of a TrajectoryProblem. They have the same optima.
+enum class Formulation {
+  kShooting,  ///< inputs alone are variables; the trajectory is what simulation makes of them
+  kMultipleShooting,  ///< the horizon in segments, each from a state that is a variable
+  kAllAtOnce          ///< every coordinate of every stage is a variable, ḡ = 0 are constraints
+};
+
+/// "shooting", "multiple-shooting", "all-at-once".
+[[nodiscard]] std::string_view name_of(Formulation formulation);
+/// @throws InvalidInput naming the formulations there are
+[[nodiscard]] Formulation find_formulation(std::string_view name);
+
+/// How to transcribe.
+struct TranscriptionOptions {
+  Formulation formulation = Formulation::kShooting;
+  /// Of kMultipleShooting, as equal as steps allow. BDF2 starts anew in each: give the others
+  /// SimulationOptions::restarts = segment_starts(steps, segments) to have the same trajectory.
+  int segments = 8;
+  int threads = 0;  ///< that evaluate segments; 0: one per core
+  /// A first guess of the motion where that is a variable; empty: what the start simulates, and
+  /// where that fails, rest.                                                    [dof x N+1]
+  Eigen::MatrixXd q_guess = {};
+};
+
+/// Where a transcription spent its time.
+struct TranscriptionTimes {
+  double simulation = 0.0;  ///< s; of kAllAtOnce: residuals and values
+  double gradient = 0.0;    ///< s
+  double jacobian = 0.0;    ///< s
+  double hessian = 0.0;     ///< s
+  int simulations = 0;
+  int gradients = 0;
+  int jacobians = 0;
+  int hessians = 0;
+};
+
+/// A TrajectoryProblem as a nonlinear program. Its x begins with InputVariables; its constraints
+/// begin with the problem's own rows.
+///
+/// A point is simulated once, whatever is asked there. Where the parameters are impossible or the
+/// simulation fails, an evaluation throws EvaluationError. hessian_pattern(kExact) throws
+/// InvalidInput if a term or the design map has no second derivatives, naming it; kGaussNewton is
+/// the second derivative of the objective by the trajectory's values, brought to x by first
+/// derivatives, and needs only the objective's.
+class Transcription : public solvers::Nlp {
+ public:
+  [[nodiscard]] const solvers::NlpVariables& variables() const final { return variables_; }
+  [[nodiscard]] const solvers::NlpConstraints& constraint_limits() const final { return limits_; }
+  [[nodiscard]] const solvers::SparsityPattern& jacobian_pattern() const final { return pattern_; }
+
+  [[nodiscard]] const solvers::SparsityPattern& hessian_pattern(solvers::HessianKind kind) final {
+    return plan(kind).entries.pattern();
+  }
+
+  /// The trajectory's values at x.
+  /// @throws EvaluationError where it cannot be simulated
+  [[nodiscard]] virtual const TrajectoryValues& trajectory_values(const Eigen::VectorXd& x) = 0;
+
+  /// What x gives the simulation.
+  [[nodiscard]] Inputs inputs(const Eigen::VectorXd& x) const { return head_.inputs(x); }
+  /// The design variables of x.                                                         [d]
+  [[nodiscard]] Eigen::VectorXd design(const Eigen::VectorXd& x) const { return head_.design(x); }
+  [[nodiscard]] const TrajectoryProblem& problem() const { return problem_; }
+  [[nodiscard]] const InputVariables& input_variables() const { return head_; }
+  [[nodiscard]] const TranscriptionTimes& times() const { return times_; }
+
+ protected:
+  /// Lays down the head of x and the problem's own rows.
+  /// @throws InvalidInput if the problem's parts do not fit together
+  explicit Transcription(const TrajectoryProblem& problem);
+
+  /// Appends variables after the head.
+  void add_variables(const solvers::NlpVariables& more);
+  /// Appends equations c = 0 after the problem's own rows.
+  void add_equations(const std::vector<std::string>& names);
+  /// @throws InvalidInput if x has not as many entries as there are variables
+  void require_size(const Eigen::VectorXd& x) const;
+  /// Number of the problem's own rows.
+  [[nodiscard]] Eigen::Index own_rows() const { return own_rows_; }
+  /// Values of the problem's own rows.
+  void own_constraints(const TrajectoryValues& values, Eigen::VectorXd& c) const;
+  /// σ ∂Ψ + λᵀ ∂c by the values, of the objective's terms and the problem's own rows.
+  [[nodiscard]] TrajectoryPartials lagrangian_partials(const TrajectoryValues& values, double sigma,
+                                                       const Eigen::VectorXd& lambda) const;
+
+  /// The entries of x that a number of the trajectory depends on. It never changes.
+  [[nodiscard]] virtual std::vector<Eigen::Index> columns_of(const ValuePlace& place) const = 0;
+  /// The number's derivatives by columns_of(place), at the point that was differentiated last.
+  virtual void derivatives_of(const ValuePlace& place, std::vector<double>& out) = 0;
+
+  /// Lays down the Jacobian of the problem's own rows, and fills it in the same order.
+  void add_own_rows(EntryPlan& entries) const;
+  void put_own_rows(const TrajectoryValues& values, EntryPlan& entries);
+
+  /// Lays down Σ second (a bᵀ + b aᵀ), once where a is b, with a and b the derivatives of two
+  /// numbers by x, place by place; and fills it in the same order.
+  virtual void add_second_places(const std::vector<SecondPlace>& places, EntryPlan& entries) const;
+  virtual void put_second_partials(const std::vector<SecondPlace>& places,
+                                   const Eigen::VectorXd& second, EntryPlan& entries);
+
+  /// The Hessian's set-up for one kind.
+  struct HessianPlan {
+    EntryPlan entries;
+    std::vector<SecondPlace> objective;  // second places of the objective's terms
+    std::vector<SecondPlace> own;        // and of the problem's own rows, `row` over all of them
+  };
+  /// The set-up for a kind, made when it is first asked for.
+  /// @throws InvalidInput naming a term, or the design map, that has no second derivatives
+  [[nodiscard]] HessianPlan& plan(solvers::HessianKind kind);
+  /// Lays down what kExact adds behind the terms' second partials and the design cost.
+  virtual void add_curvature(EntryPlan& entries) const = 0;
+  /// Fills what the terms' second partials and the design cost give.
+  void begin_values(HessianPlan& plan, const TrajectoryValues& values, double sigma,
+                    const Eigen::VectorXd& lambda, Eigen::VectorXd& out);
+
+  TrajectoryProblem problem_;
+  InputVariables head_;
+  solvers::NlpVariables variables_;
+  solvers::NlpConstraints limits_;
+  solvers::SparsityPattern pattern_;
+  TranscriptionTimes times_;
+
+ private:
+  [[nodiscard]] Eigen::VectorXd own_second_partials(const TrajectoryValues& values,
+                                                    const Eigen::VectorXd& lambda) const;
+
+  [[nodiscard]] HessianPlan make_plan(solvers::HessianKind kind) const;
+
+  Eigen::Index own_rows_ = 0;
+  std::optional<HessianPlan> exact_;
+  std::optional<HessianPlan> gauss_newton_;
+};
+
+/// Makes a nonlinear program of a problem, of which it keeps a copy of its own.
+///
+/// @throws InvalidInput if the problem's parts or the options do not fit together: sizes, places
+///         beyond the trajectory, more segments than steps
+[[nodiscard]] std::unique_ptr<Transcription> transcribe(const TrajectoryProblem& problem,
+                                                        const TranscriptionOptions& options = {});
+
+/// The steps at which the segments of kMultipleShooting begin, without the first.
+[[nodiscard]] std::vector<int> segment_starts(int steps, int segments);
+
+/// Adds the time until its end to a sum.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& sum) : sum_(sum) {}
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+  ~Stopwatch();
+
+ private:
+  double& sum_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace hbar

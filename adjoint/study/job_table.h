@@ -1,0 +1,32 @@
+#pragma once
+
+#include "hbar/adjoint/study/csv.h"
+#include "hbar/adjoint/study/many_starts.h"
+
+namespace hbar::study {
+
+/// A result as a line of the table of results, without its end.
+[[nodiscard]] std::string job_line(int index, const JobResult& result, std::size_t columns);
+
+/// The table of results: a comment that says whose it is, a heading, and a line per job that ended.
+[[nodiscard]] std::string job_table(const JobOptions& options,
+                                    const std::vector<std::optional<JobResult>>& results);
+
+/// A line's index and result.
+///
+/// @param row      of a table of results
+/// @param options  of its study
+/// @param file     for messages
+/// @throws InvalidInput that begins `file:line:column:`
+[[nodiscard]] std::pair<int, JobResult> read_job(const CsvRow& row, const JobOptions& options,
+                                                 const std::string& file);
+
+/// What a table of results holds.                                                      [count]
+///
+/// @param text  the file's bytes
+/// @throws InvalidInput that begins `file:line:` if it is another study's or has been damaged
+[[nodiscard]] std::vector<std::optional<JobResult>> read_job_table(std::string_view text,
+                                                                   const JobOptions& options,
+                                                                   const std::string& file);
+
+}  // namespace hbar::study

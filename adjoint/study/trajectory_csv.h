@@ -1,0 +1,66 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_place.h"
+
+namespace hbar::study {
+
+/// Names of a trajectory's numbers, as the columns of a table have them.
+struct TrajectoryNames {
+  std::vector<std::string> q;         ///< "NAME" of each coordinate                 [dof]
+  std::vector<std::string> qdot;      ///< "rate.NAME"                               [dof]
+  std::vector<std::string> v;         ///< "NAME.x", … of each end effector          [variables]
+  std::vector<std::string> tactile;   ///< "SENSOR.POINT.shear0", …                  [readings]
+  std::vector<std::string> measured;  ///< Simulator::measured_names                  [measured]
+  std::vector<std::string> u;         ///< "control.NAME"                            [controls]
+};
+
+/// The names of all numbers of a simulation.
+[[nodiscard]] TrajectoryNames trajectory_names(const Simulator& simulator);
+
+/// A table with a row per step k = 0 … N: time, coordinates, rates, end effectors, sensor readings,
+/// measured rows, and the controls that acted until then (none at k = 0).
+///
+/// @throws InvalidInput if a member has another number of rows than names
+[[nodiscard]] std::string trajectory_csv(const TrajectoryNames& names,
+                                         const TrajectoryValues& values);
+
+/// What was measured of a trajectory: some numbers at some steps.
+struct TrajectoryData {
+  std::vector<std::string> names;   ///< of the columns, without time                 [columns]
+  std::vector<ValuePlace> places;   ///< what each datum is a measurement of             [data]
+  std::vector<std::size_t> column;  ///< to which column each belongs                    [data]
+  Eigen::VectorXd data;             ///< in the model's units                            [data]
+
+  /// A number for each datum from one for each column: standard deviations, say.         [data]
+  ///
+  /// @throws InvalidInput if there is not one for each column
+  [[nodiscard]] Eigen::VectorXd by_column(const Eigen::VectorXd& numbers) const;
+};
+
+/// How a table's times belong to steps.
+struct TimeGrid {
+  double h = 0.0;           ///< time step, time
+  int steps = 0;            ///< N
+  double tolerance = 1e-6;  ///< how far a time may be from k h, in units of h
+};
+
+/// Reads a table of measured numbers: a heading, whose first column is "time" and whose others are
+/// names of TrajectoryNames in any order ("q.NAME" and "qdot.NAME", as the hbar command writes
+/// them, are understood too), and a row for each step that was measured, in the order of time. An
+/// empty cell is a datum that is missing. A control belongs to the step that ends at the row's
+/// time.
+///
+/// @param text  the file's bytes
+/// @param file  its name for messages
+/// @throws InvalidInput that begins `file:line:column:` for a column that has no meaning or has one
+///   twice, a row of another length, a cell that is no finite number, or a time that is no step's
+[[nodiscard]] TrajectoryData read_trajectory_csv(std::string_view text, const std::string& file,
+                                                 const TrajectoryNames& names,
+                                                 const TimeGrid& grid);
+
+}  // namespace hbar::study

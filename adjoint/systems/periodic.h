@@ -1,0 +1,70 @@
+#pragma once
+
+#include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/solvers/linear/cached_solver.h"
+
+namespace hbar {
+
+/// How a periodic motion is looked for.
+struct PeriodicOptions {
+  /// Periods simulated before Newton's method takes over: a start near the limit cycle. ≥ 1
+  int warm_up = 3;
+  /// q_N − q_0, rad or length; empty means zero. A wheel that turns once has 2π here.       [dof]
+  Eigen::VectorXd advance = {};
+  /// Of the whole trajectory; tol is per stage, as in SimulationOptions.
+  solvers::NewtonOptions newton = {};
+  solvers::SolverFactory solver = nullptr;  ///< for H̄; null means KLU
+};
+
+/// A motion with q_N = q_0 + advance and q̇_N = q̇_0: one period, N steps.
+struct PeriodicOrbit {
+  Trajectory trajectory;         ///< inputs.q0 and qdot0 are those of the orbit
+  solvers::NewtonReport newton;  ///< of the whole trajectory
+  double mismatch =
+      0.0;  ///< max |(q_N, q̇_N) − (q_0, q̇_0)| of the last simulated period, as a start
+};
+
+/// Finds periodic motions: Newton's method on ḡ(q̄, p, u, q_N − advance, q̇_N) = 0 for the whole
+/// trajectory at once. H̄ then has blocks above its diagonal (PeriodicMatrix), which is what general
+/// sparse solvers are for; the period is the simulator's N·h, as for a mechanism driven by
+/// controls.
+///
+/// BDF2 starts every period with its SDIRK2 step. Holds its workspace for one simulator and belongs
+/// to one thread at a time.
+class PeriodicSolver {
+ public:
+  /// @throws InvalidInput if warm_up or the size of advance is not as PeriodicOptions says
+  explicit PeriodicSolver(Simulator& simulator, PeriodicOptions options = {});
+  ~PeriodicSolver();
+  PeriodicSolver(PeriodicSolver&&) noexcept;
+  PeriodicSolver& operator=(PeriodicSolver&&) noexcept;
+
+  /// @param guess  p and u as they are to be; q0 and qdot0 a start for the first period
+  /// @throws NumericalFailure if a simulated period or Newton's method does not converge (the
+  ///         message says where, how far it got and what to try), or H̄ is singular: the orbit is
+  ///         not isolated, as of a mechanism without damping or drive
+  /// @throws InvalidInput as Simulator::rollout, and if exponential coordinates end in another
+  /// chart
+  [[nodiscard]] PeriodicOrbit solve(const Inputs& guess);
+
+  /// Ψ and its derivative by p and u along an orbit, the initial state following:
+  /// H̄ᵀ z̄ = ȳ with the periodic H̄, then ∂Ψ/∂(p, u) − z̄ᵀ ∂ḡ/∂(p, u).
+  ///
+  /// @param orbit  that solve() found
+  /// @returns  with q0 and qdot0 zero: they are no inputs
+  /// @throws NumericalFailure if H̄ is singular
+  [[nodiscard]] Gradient gradient(const Trajectory& orbit, const Objective& objective);
+
+  /// The solver of the last call.
+  [[nodiscard]] const solvers::LinearSolver& solver() const;
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> work_;
+};
+
+/// One orbit: PeriodicSolver::solve.
+[[nodiscard]] PeriodicOrbit solve_periodic(Simulator& simulator, const Inputs& guess,
+                                           const PeriodicOptions& options = {});
+
+}  // namespace hbar

@@ -1,0 +1,278 @@
+#include "hbar/adjoint/terms/check_terms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "hbar/adjoint/terms/value_access.h"
+#include "hbar/core/base/error.h"
+
+namespace hbar {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// One entry of a row's matrix of second partials, by numbers of places.
+struct SecondEntry {
+  int row = 0;
+  Index a = 0;
+  Index b = 0;
+  double value = 0.0;
+};
+
+/// A term of either kind as rows of all numbers of the values.
+struct TermRows {
+  std::vector<std::string> names;
+  std::function<VectorXd(const TrajectoryValues&)> values;         // [rows]
+  std::function<MatrixXd(const TrajectoryValues&)> jacobian;       // [rows x numbers]
+  std::function<std::vector<SecondPlace>()> second_places;         // may throw InvalidInput
+  std::function<VectorXd(const TrajectoryValues&, Index)> second;  // [count]
+};
+
+/// Numbers that were not written stand out.
+VectorXd unwritten(Index count) {
+  return VectorXd::Constant(count, std::numeric_limits<double>::quiet_NaN());
+}
+
+/// The number of a place in all_places(shape).
+Index number_of(const TrajectoryValues& shape, const ValuePlace& place) {
+  static_cast<void>(value_at(shape, place));  // refuses a place that is not there
+  Index first = 0;
+  for (int field = 0; field < static_cast<int>(place.field); ++field) {
+    const auto before = static_cast<ValueField>(field);
+    first += field_rows(shape, before) * field_columns(shape, before);
+  }
+  const Index column = place.field == ValueField::kP ? 0 : place.step;
+  return first + column * field_rows(shape, place.field) + place.index;
+}
+
+class TermChecker {
+ public:
+  TermChecker(TermRows rows, const TrajectoryValues& at)
+      : rows_(std::move(rows)), at_(at), places_(all_places(at)), scale_(scales()) {}
+
+  TermCheck check() {
+    jacobian_ = rows_.jacobian(at_) * scale_.asDiagonal();
+    norms_ = jacobian_.rowwise().norm().unaryExpr([](double x) { return x == 0.0 ? 1.0 : x; });
+    for (Index i = 0; i < count(); ++i) {
+      const VectorXd expected = difference(i, rows_.values).col(0).cwiseQuotient(norms_);
+      const VectorXd found = jacobian_.col(i).cwiseQuotient(norms_);
+      for (Index row = 0; row < expected.size(); ++row) {
+        note(std::abs(expected[row] - found[row]), out_.gap, out_.gap_name,
+             [&] { return concat(row_name(row), " by ", name(i)); });
+      }
+    }
+    read_second_places();
+    if (out_.has_second) {
+      check_second();
+    }
+    check_slopes();
+    return out_;
+  }
+
+ private:
+  [[nodiscard]] Index count() const { return static_cast<Index>(places_.size()); }
+  [[nodiscard]] std::string name(Index i) const {
+    return place_name(places_[static_cast<std::size_t>(i)]);
+  }
+  [[nodiscard]] const std::string& row_name(Index row) const {
+    return rows_.names[static_cast<std::size_t>(row)];
+  }
+
+  /// Typical sizes of the numbers: a row's largest over time.
+  [[nodiscard]] VectorXd scales() const {
+    VectorXd out(count());
+    for (Index i = 0; i < count(); ++i) {
+      ValuePlace place = places_[static_cast<std::size_t>(i)];
+      double largest = 0.0;
+      for (place.step = 0; place.step < field_columns(at_, place.field); ++place.step) {
+        largest = std::max(largest, std::abs(value_at(at_, place)));
+      }
+      out[i] = largest > 0.0 ? largest : 1.0;
+    }
+    return out;
+  }
+
+  static void note(double gap, double& worst, std::string& worst_name,
+                   const std::function<std::string()>& name) {
+    if (!std::isnan(worst) && !(gap <= worst)) {  // a gap of NaN stays
+      worst = gap;
+      worst_name = name();
+    }
+  }
+
+  /// Central difference by number i in units of its scale, extrapolated once.
+  template <typename Function>
+  [[nodiscard]] MatrixXd difference(Index i, const Function& f) const {
+    const auto central = [&](double step) {
+      TrajectoryValues ahead = at_;
+      TrajectoryValues behind = at_;
+      value_at(ahead, places_[static_cast<std::size_t>(i)]) += step * scale_[i];
+      value_at(behind, places_[static_cast<std::size_t>(i)]) -= step * scale_[i];
+      return MatrixXd((f(ahead) - f(behind)) / (2.0 * step));
+    };
+    return (4.0 * central(5e-4) - central(1e-3)) / 3.0;
+  }
+
+  /// Fills second_ with scaled entries, and counts what is repeated and idle.
+  void read_second_places() {
+    std::vector<SecondPlace> places;
+    try {
+      places = rows_.second_places();
+    } catch (const InvalidInput&) {
+      return;  // the term says that it has none
+    }
+    out_.has_second = true;
+    const VectorXd values = rows_.second(at_, static_cast<Index>(places.size()));
+    std::set<std::tuple<int, Index, Index>> known;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (places[k].row < 0 || places[k].row >= norms_.size()) {
+        throw InvalidInput(concat("a second place names row ", places[k].row, "; there are ",
+                                  norms_.size(), " rows"));
+      }
+      const Index a = number_of(at_, places[k].a);
+      const Index b = number_of(at_, places[k].b);
+      const double value = values[static_cast<Index>(k)];
+      second_.push_back({places[k].row, a, b, value * scale_[a] * scale_[b]});
+      out_.idle += value == 0.0 ? 1 : 0;
+      out_.repeated += known.emplace(places[k].row, std::min(a, b), std::max(a, b)).second ? 0 : 1;
+    }
+  }
+
+  void check_second() {
+    VectorXd squares = VectorXd::Zero(norms_.size());
+    for (const SecondEntry& entry : second_) {
+      squares[entry.row] += (entry.a == entry.b ? 1.0 : 2.0) * entry.value * entry.value;
+    }
+    for (Index i = 0; i < count(); ++i) {
+      MatrixXd gaps = difference(i, rows_.jacobian) * scale_.asDiagonal();
+      for (const SecondEntry& entry : second_) {
+        if (entry.a == i) {
+          gaps(entry.row, entry.b) -= entry.value;
+        } else if (entry.b == i) {
+          gaps(entry.row, entry.a) -= entry.value;
+        }
+      }
+      for (Index row = 0; row < gaps.rows(); ++row) {
+        const double norm = squares[row] == 0.0 ? norms_[row] : std::sqrt(squares[row]);
+        for (Index j = 0; j < count(); ++j) {
+          note(std::abs(gaps(row, j)) / norm, out_.second_gap, out_.second_gap_name,
+               [&] { return concat(row_name(row), " by ", name(i), " and ", name(j)); });
+        }
+      }
+    }
+  }
+
+  void check_slopes() {
+    VectorXd direction(count());
+    for (Index i = 0; i < count(); ++i) {
+      direction[i] = std::cos(1.0 + 2.0 * static_cast<double>(i));
+    }
+    const VectorXd c = rows_.values(at_);
+    const VectorXd first = jacobian_ * direction;
+    VectorXd second = VectorXd::Zero(c.size());
+    for (const SecondEntry& entry : second_) {
+      second[entry.row] +=
+          (entry.a == entry.b ? 0.5 : 1.0) * entry.value * direction[entry.a] * direction[entry.b];
+    }
+    const double rounding = 1e-13 * (1.0 + c.cwiseQuotient(norms_).norm());
+    const auto order = [&](double quadratic) {
+      const auto remainder = [&](double e) {
+        TrajectoryValues moved = at_;
+        for (Index i = 0; i < count(); ++i) {
+          value_at(moved, places_[static_cast<std::size_t>(i)]) += e * scale_[i] * direction[i];
+        }
+        return (rows_.values(moved) - c - e * first - quadratic * e * e * second)
+            .cwiseQuotient(norms_)
+            .norm();
+      };
+      const double coarse = remainder(1e-2);
+      const double fine = remainder(1e-3);
+      return fine <= rounding ? std::numeric_limits<double>::infinity() : std::log10(coarse / fine);
+    };
+    out_.slope = order(0.0);
+    if (out_.has_second) {
+      out_.second_slope = order(1.0);
+    }
+  }
+
+  TermRows rows_;
+  const TrajectoryValues& at_;
+  std::vector<ValuePlace> places_;
+  VectorXd scale_;                   // of each number
+  MatrixXd jacobian_;                // in units of the scale
+  VectorXd norms_;                   // of its rows
+  std::vector<SecondEntry> second_;  // in units of the scale
+  TermCheck out_;
+};
+
+/// All partials in the order of all_places.
+VectorXd flat(const TrajectoryPartials& partials) {
+  VectorXd out(partials.q.size() + partials.qdot.size() + partials.v.size() +
+               partials.tactile.size() + partials.measured.size() + partials.u.size() +
+               partials.p.size());
+  out << partials.q.reshaped(), partials.qdot.reshaped(), partials.v.reshaped(),
+      partials.tactile.reshaped(), partials.measured.reshaped(), partials.u.reshaped(), partials.p;
+  return out;
+}
+
+}  // namespace
+
+bool TermCheck::passed() const {
+  constexpr double kBound = 1e-6;
+  const bool first = gap < kBound && slope >= 1.9;
+  return first && (!has_second || (second_gap < kBound && second_slope >= 2.9 && repeated == 0));
+}
+
+TermCheck check_objective_term(const ObjectiveTerm& term, const TrajectoryValues& values) {
+  TermRows rows;
+  rows.names = {term.name()};
+  rows.values = [&](const TrajectoryValues& at) { return VectorXd::Constant(1, term.value(at)); };
+  rows.jacobian = [&](const TrajectoryValues& at) -> MatrixXd {
+    TrajectoryPartials partials(at);
+    term.add_partials(at, partials);
+    return flat(partials).transpose();
+  };
+  rows.second_places = [&] { return term.second_places(values); };
+  rows.second = [&](const TrajectoryValues& at, Index count) {
+    VectorXd second = unwritten(count);
+    term.second_partials(at, second);
+    return second;
+  };
+  return TermChecker(std::move(rows), values).check();
+}
+
+TermCheck check_constraint_term(const ConstraintTerm& term, const TrajectoryValues& values) {
+  const Index numbers = static_cast<Index>(all_places(values).size());
+  TermRows rows;
+  rows.names = term.rows().names;
+  rows.values = [&](const TrajectoryValues& at) {
+    VectorXd c = unwritten(term.rows().size());
+    term.values(at, c);
+    return c;
+  };
+  rows.jacobian = [&](const TrajectoryValues& at) {
+    VectorXd partials = unwritten(static_cast<Index>(term.places().size()));
+    term.partials(at, partials);
+    MatrixXd J = MatrixXd::Zero(term.rows().size(), numbers);
+    for (std::size_t k = 0; k < term.places().size(); ++k) {
+      const PartialPlace& place = term.places()[k];
+      J(place.row, number_of(at, place.place())) += partials[static_cast<Index>(k)];
+    }
+    return J;
+  };
+  rows.second_places = [&] { return term.second_places(); };
+  rows.second = [&](const TrajectoryValues& at, Index count) {
+    VectorXd second = unwritten(count);
+    term.second_partials(at, second);
+    return second;
+  };
+  return TermChecker(std::move(rows), values).check();
+}
+
+}  // namespace hbar

@@ -1,0 +1,106 @@
+#include "hbar/core/files/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <string>
+#include <system_error>
+
+#include "hbar/core/base/error.h"
+
+namespace hbar::scene {
+namespace {
+
+/// An open file that is closed, and a temporary one removed, when this goes out of scope.
+class OpenFile {
+ public:
+  OpenFile(int descriptor, std::string temporary)
+      : descriptor_(descriptor), temporary_(std::move(temporary)) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  }
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+  [[nodiscard]] const std::string& temporary() const { return temporary_; }
+  /// 0, or the system's error code.
+  int close() {
+    const int failed = ::close(descriptor_);
+    descriptor_ = -1;
+    return failed == 0 ? 0 : errno;
+  }
+  /// The temporary file has become the real one.
+  void keep() { temporary_.clear(); }
+
+ private:
+  int descriptor_;
+  std::string temporary_;
+};
+
+[[noreturn]] void fail(const std::filesystem::path& path, const char* what, int code) {
+  throw IoError(
+      concat(path.string(), ": cannot be ", what, ": ", std::generic_category().message(code)));
+}
+
+void write_all(int descriptor, std::string_view text, const std::filesystem::path& path) {
+  while (!text.empty()) {
+    const ssize_t count = ::write(descriptor, text.data(), text.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path, "written", errno);
+    text.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
+void write_directly(const std::filesystem::path& path, std::string_view text) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+  if (descriptor < 0) fail(path, "opened", errno);
+  OpenFile file(descriptor, "");
+  write_all(descriptor, text, path);
+  if (const int code = file.close()) fail(path, "written", code);
+}
+
+/// The permissions a new file would get.
+mode_t new_file_mode() {
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  return 0666 & ~mask;
+}
+
+}  // namespace
+
+void write_file_atomically(const std::filesystem::path& path, std::string_view text) {
+  if (path.empty()) fail("(no name)", "written", ENOENT);
+  struct stat status = {};
+  const bool exists = ::stat(path.c_str(), &status) == 0;
+  if (exists && S_ISDIR(status.st_mode)) fail(path, "written", EISDIR);
+  if (exists && !S_ISREG(status.st_mode)) return write_directly(path, text);
+
+  std::error_code ignored;
+  const std::filesystem::path target = exists ? std::filesystem::canonical(path, ignored) : path;
+  const std::filesystem::path& real = target.empty() ? path : target;
+  std::string temporary = real.string() + ".XXXXXX";
+  const int descriptor = ::mkstemp(temporary.data());
+  if (descriptor < 0) fail(path, "written", errno);
+  OpenFile file(descriptor, temporary);
+
+  write_all(descriptor, text, path);
+  const mode_t mode = exists ? (status.st_mode & 07777) : new_file_mode();
+  if (::fchmod(descriptor, mode) != 0) fail(path, "written", errno);
+  if (::fsync(descriptor) != 0) fail(path, "written", errno);
+  if (const int code = file.close()) fail(path, "written", code);
+  if (::rename(temporary.c_str(), real.c_str()) != 0) fail(path, "written", errno);
+  file.keep();
+
+  const std::filesystem::path folder = real.has_parent_path() ? real.parent_path() : ".";
+  const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (handle >= 0) {  // the rename itself reaches the disk; not every file system can promise it
+    ::fsync(handle);
+    ::close(handle);
+  }
+}
+
+}  // namespace hbar::scene

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "hbar/core/parameters/parameters.h"
+
+namespace hbar {
+
+/// Rows of a dof x dof block that can be non-zero, per column: the coordinates on the same path
+/// (branch-induced sparsity), ascending.
+[[nodiscard]] std::vector<std::vector<int>> tree_pattern(const Tree& tree);
+
+/// The same of a model's residual: besides those, the coordinates that declared contacts couple.
+[[nodiscard]] std::vector<std::vector<int>> residual_pattern(const Model& model);
+
+/// Coordinates that a contact couples: those that move either of its bodies, ascending.
+[[nodiscard]] std::vector<int> coupled_coordinates(const Model& model, const Contact& contact);
+
+/// The rows of g that a block's parameters can touch, ascending: the coordinates on the path to the
+/// world, for a joint transformation also those below it, and what contacts of moved bodies couple.
+[[nodiscard]] std::vector<int> parameter_rows(const Model& model, const ParameterBlock& block);
+
+}  // namespace hbar

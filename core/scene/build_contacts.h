@@ -1,0 +1,20 @@
+#pragma once
+
+#include "hbar/core/model/model_builder.h"
+#include "hbar/core/scene/build_bodies.h"
+
+namespace hbar::scene {
+
+/// Adds a scene's contacts, in file order, to a model that has its links. A contact of two cuboids
+/// becomes two contacts, the first cuboid's points first, named NAME-a and NAME-b if the scene
+/// names it. Makes the distance of each mesh that points are tested against, once.
+///
+/// @param scene    what has been read
+/// @param bodies   of the model's links
+/// @param builder  holds the links; takes the contacts
+/// @throws InvalidInput  if the model refuses a contact (a file of contact points was empty, names
+///                       of contacts are equal) or a mesh has no distance; messages begin
+///                       `file:line: <element ...>:`
+void add_contacts(const Scene& scene, const BuiltBodies& bodies, ModelBuilder& builder);
+
+}  // namespace hbar::scene

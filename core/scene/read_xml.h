@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hbar/core/scene/description.h"
+
+namespace hbar::scene {
+
+/// A scene file that has been read.
+struct Scene {
+  Description description;           ///< what it says, defaults applied
+  std::vector<std::string> notices;  ///< what the person should know, each `file:line: ...`
+  std::string file;                  ///< its name, as messages spell it
+  std::filesystem::path folder;      ///< where the files it names are looked for
+};
+
+/// Reads a scene file; doc/scene_format.md says what it may hold. Files it names are not opened.
+///
+/// @throws IoError       if the file cannot be read
+/// @throws InvalidInput  for everything the format does not allow; the message begins
+///                       `file:line: <element attribute="found">:` and ends with what is allowed
+[[nodiscard]] Scene read_scene(const std::filesystem::path& path);
+
+/// The same from the text of a file.
+///
+/// @param text    what the file would hold
+/// @param name    what messages call it
+/// @param folder  where the files it names are looked for
+[[nodiscard]] Scene read_scene_text(std::string_view text, const std::string& name,
+                                    const std::filesystem::path& folder = ".");
+
+}  // namespace hbar::scene

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "hbar/core/base/scalar.h"
+
+namespace hbar::solvers {
+
+/// Factors that bring each row's largest magnitude to between 1 and 2. Powers of two: scaling by
+/// them rounds nothing.
+///
+/// @param largest  magnitude of each row; 0 gives 1                              [n]
+/// @param scale    written to                                                    [n]
+inline void set_power_of_two_scales(const Eigen::VectorXd& largest, Eigen::VectorXd& scale) {
+  for (Eigen::Index i = 0; i < largest.size(); ++i) {
+    scale[i] = largest[i] > 0.0 ? std::exp2(-std::max(std::ilogb(largest[i]), -1022)) : 1.0;
+  }
+}
+
+}  // namespace hbar::solvers

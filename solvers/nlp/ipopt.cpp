@@ -1,0 +1,324 @@
+#include "hbar/solvers/nlp/ipopt.h"
+
+#include <IpIpoptApplication.hpp>
+#include <IpJournalist.hpp>
+#include <IpTNLP.hpp>
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "hbar/solvers/nlp/ipopt_run.h"
+#include "hbar/solvers/nlp/scaled_nlp.h"
+
+namespace hbar::solvers {
+namespace {
+
+using Ipopt::Index;
+using Ipopt::Number;
+using Clock = std::chrono::steady_clock;
+
+/// Holds Ipopt for one thread; a second run inside the first is refused instead of waiting forever.
+class ExclusiveRun {
+ public:
+  ExclusiveRun() {
+    if (running_here()) {
+      throw InvalidInput("ipopt: solve_with_ipopt was called from inside an optimisation");
+    }
+    lock_ = std::unique_lock<std::mutex>(mutex());
+    running_here() = true;
+  }
+  ExclusiveRun(const ExclusiveRun&) = delete;
+  ExclusiveRun& operator=(const ExclusiveRun&) = delete;
+  ~ExclusiveRun() { running_here() = false; }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+  static bool& running_here() {
+    thread_local bool running = false;
+    return running;
+  }
+  std::unique_lock<std::mutex> lock_;
+};
+
+using Vector = Eigen::Map<const Eigen::VectorXd>;
+using Output = Eigen::Map<Eigen::VectorXd>;
+
+/// What an Nlp looks like to Ipopt: scaled, C arrays, false for failure.
+class Adapter final : public Ipopt::TNLP {
+ public:
+  Adapter(Nlp& nlp, const IpoptOptions& options)
+      : options_(options),
+        program_(nlp, options.constraint_tolerance, options.objective_scale, options.hessian) {
+    PrimalDualPoint start;
+    start.x = nlp.variables().start;
+    start_ = program_.scaled(options.warm_start.value_or(start));
+    last_ = start_;
+  }
+
+  bool get_nlp_info(Index& count, Index& constraint_count, Index& jacobian_count,
+                    Index& hessian_count, IndexStyleEnum& style) override {
+    count = static_cast<Index>(n());
+    constraint_count = static_cast<Index>(m());
+    jacobian_count = static_cast<Index>(program_.jacobian_pattern().rows.size());
+    hessian_count = static_cast<Index>(program_.hessian_pattern().rows.size());
+    style = C_STYLE;
+    return true;
+  }
+
+  bool get_bounds_info(Index, Number* x_l, Number* x_u, Index, Number* g_l, Number* g_u) override {
+    // Ipopt's infinity.
+    const auto bounded = [](const Eigen::VectorXd& v) { return v.cwiseMax(-1e20).cwiseMin(1e20); };
+    Output(x_l, n()) = bounded(program_.scaled_lower());
+    Output(x_u, n()) = bounded(program_.scaled_upper());
+    if (m() == 0) return true;
+    Output(g_l, m()) = bounded(program_.scaled_constraint_lower());
+    Output(g_u, m()) = bounded(program_.scaled_constraint_upper());
+    return true;
+  }
+
+  bool get_starting_point(Index, bool init_x, Number* x, bool init_z, Number* z_L, Number* z_U,
+                          Index, bool init_lambda, Number* lambda) override {
+    if (init_x) Output(x, n()) = start_.x;
+    if (init_z) Output(z_L, n()) = start_.lower_multipliers;
+    if (init_z) Output(z_U, n()) = start_.upper_multipliers;
+    if (init_lambda && m() > 0) Output(lambda, m()) = start_.constraint_multipliers;
+    return true;
+  }
+
+  bool eval_f(Index, const Number* x, bool, Number& value) override {
+    return !must_stop() && program_.scaled_objective(Vector(x, n()), value);
+  }
+
+  bool eval_grad_f(Index, const Number* x, bool, Number* gradient) override {
+    return !must_stop() && program_.scaled_gradient(Vector(x, n()), Output(gradient, n()));
+  }
+
+  bool eval_g(Index, const Number* x, bool, Index, Number* values) override {
+    return !must_stop() && program_.scaled_constraints(Vector(x, n()), Output(values, m()));
+  }
+
+  bool eval_jac_g(Index, const Number* x, bool, Index, Index entries, Index* rows, Index* columns,
+                  Number* values) override {
+    if (values == nullptr) return copy_pattern(program_.jacobian_pattern(), rows, columns);
+    return !must_stop() && program_.scaled_jacobian(Vector(x, n()), Output(values, entries));
+  }
+
+  bool eval_h(Index, const Number* x, bool, Number sigma, Index, const Number* lambda, bool,
+              Index entries, Index* rows, Index* columns, Number* values) override {
+    if (options_.hessian == HessianKind::kLimitedMemory) return false;
+    if (values == nullptr) return copy_pattern(program_.hessian_pattern(), rows, columns);
+    return !must_stop() && program_.scaled_hessian(Vector(x, n()), sigma, Vector(lambda, m()),
+                                                   Output(values, entries));
+  }
+
+  bool intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, Number objective,
+                             Number inf_pr, Number inf_du, Number mu, Number d_norm,
+                             Number regularization, Number, Number alpha_primal, Index trials,
+                             const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+    result_.iterations = iteration;
+    result_.mu = mu;
+    if (must_stop()) return false;
+    if (!options_.on_iteration) return true;
+    try {
+      const bool restoring = mode == Ipopt::RestorationPhaseMode;
+      const bool go_on = options_.on_iteration(
+          {iteration, restoring, objective * program_.objective_scale(), inf_pr, inf_du, mu, d_norm,
+           alpha_primal, regularization, trials, elapsed()});
+      if (!go_on) stopped_ = IpoptStatus::kStopped;
+    } catch (...) {
+      exception_ = std::current_exception();
+    }
+    return !must_stop();
+  }
+
+  void finalize_solution(Ipopt::SolverReturn, Index, const Number* x, const Number* z_L,
+                         const Number* z_U, Index, const Number*, const Number* lambda, Number,
+                         const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+    last_.x = Vector(x, n());
+    last_.lower_multipliers = Vector(z_L, n());
+    last_.upper_multipliers = Vector(z_U, n());
+    if (m() > 0) last_.constraint_multipliers = Vector(lambda, m());
+    finished_ = true;
+  }
+
+  /// The exception of the program or of the callback, if there was one.
+  [[nodiscard]] std::exception_ptr exception() const {
+    return exception_ != nullptr ? exception_ : program_.evaluator().exception();
+  }
+
+  /// The result, given how Ipopt says it ended.
+  [[nodiscard]] IpoptResult take_result(IpoptStatus status, Nlp& nlp);
+
+ private:
+  [[nodiscard]] Eigen::Index n() const { return program_.variable_count(); }
+  [[nodiscard]] Eigen::Index m() const { return program_.constraint_count(); }
+  [[nodiscard]] double elapsed() const {
+    return std::chrono::duration<double>(Clock::now() - begin_).count();
+  }
+  static bool copy_pattern(const SparsityPattern& pattern, Index* rows, Index* columns) {
+    std::copy(pattern.rows.begin(), pattern.rows.end(), rows);
+    std::copy(pattern.columns.begin(), pattern.columns.end(), columns);
+    return true;
+  }
+
+  /// Whether the run is over; also asked between evaluations, since one may take long.
+  bool must_stop() {
+    if (exception() != nullptr) return true;
+    if (stopped_ || !program_.evaluator().best().found) return stopped_.has_value();
+    if (options_.stop != nullptr && options_.stop->load()) {
+      stopped_ = IpoptStatus::kInterrupted;
+    } else if (elapsed() > options_.max_wall_time) {
+      stopped_ = IpoptStatus::kTimeLimit;
+    }
+    return stopped_.has_value();
+  }
+
+  const IpoptOptions& options_;
+  ScaledNlp program_;
+  PrimalDualPoint start_;  // scaled
+  PrimalDualPoint last_;   // scaled
+  bool finished_ = false;  // last_ is Ipopt's
+  Clock::time_point begin_ = Clock::now();
+  std::optional<IpoptStatus> stopped_;
+  std::exception_ptr exception_;
+  IpoptResult result_;
+};
+
+IpoptResult Adapter::take_result(IpoptStatus status, Nlp& nlp) {
+  IpoptResult& r = result_;
+  r.status = stopped_.value_or(status);
+  NlpEvaluator& evaluator = program_.evaluator();
+  const PrimalDualPoint last = program_.unscaled(last_);
+  r.constraint_multipliers = last.constraint_multipliers;
+  r.lower_multipliers = last.lower_multipliers;
+  r.upper_multipliers = last.upper_multipliers;
+  const BestPoint& best = evaluator.best();
+  const bool use_last = (r.converged() || r.status == IpoptStatus::kFeasible) && finished_;
+  const double* f = use_last ? evaluator.objective(last.x) : nullptr;
+  const Eigen::VectorXd* c = use_last ? evaluator.constraints(last.x) : nullptr;
+  if (f != nullptr && c != nullptr) {
+    r.x = last.x;
+    r.c = *c;
+    r.objective = *f;
+  } else if (best.found) {
+    r.x = best.x;
+    r.c = best.c;
+    r.objective = best.objective;
+  } else {
+    r.x = program_.unscaled(start_).x;
+    r.c.setConstant(m(), std::numeric_limits<double>::quiet_NaN());
+    r.objective = std::numeric_limits<double>::quiet_NaN();
+  }
+  r.violation = largest_violation(nlp, r.x, r.c);
+  r.feasible = best.found && r.violation.relative <= options_.constraint_tolerance;
+  r.evaluations = evaluator.counts();
+  r.elapsed = elapsed();
+  r.message = concat("ipopt: ", to_string(r.status), " after ", r.iterations, " iterations: ");
+  if (best.found) {
+    r.message += concat(r.feasible ? "feasible" : "infeasible", ", objective ", r.objective,
+                        ", largest violation ", r.violation.amount);
+    if (r.violation.amount > 0.0) r.message += concat(" (", r.violation.name, ")");
+  } else {
+    r.message += "no point could be evaluated";
+  }
+  if (!r.converged() && r.evaluations.failures > 0) {
+    r.message += concat("; ", r.evaluations.failures,
+                        " evaluations failed, the last with: ", evaluator.last_failure());
+  }
+  if (!advice(r.status).empty()) r.message += concat("; ", advice(r.status));
+  return r;
+}
+
+// Ipopt's numbers changed between versions, its names did not.
+IpoptStatus translate(Ipopt::ApplicationReturnStatus status) {
+  switch (status) {
+    case Ipopt::Solve_Succeeded:
+      return IpoptStatus::kOptimal;
+    case Ipopt::Solved_To_Acceptable_Level:
+      return IpoptStatus::kAcceptable;
+    case Ipopt::Infeasible_Problem_Detected:
+      return IpoptStatus::kInfeasible;
+    case Ipopt::Search_Direction_Becomes_Too_Small:
+      return IpoptStatus::kStepTooSmall;
+    case Ipopt::Diverging_Iterates:
+      return IpoptStatus::kDiverging;
+    case Ipopt::User_Requested_Stop:
+      return IpoptStatus::kStopped;
+    case Ipopt::Feasible_Point_Found:
+      return IpoptStatus::kFeasible;
+    case Ipopt::Maximum_Iterations_Exceeded:
+      return IpoptStatus::kIterationLimit;
+    case Ipopt::Restoration_Failed:
+      return IpoptStatus::kRestorationFailed;
+    case Ipopt::Error_In_Step_Computation:
+      return IpoptStatus::kStepFailed;
+    case Ipopt::Maximum_CpuTime_Exceeded:
+      return IpoptStatus::kTimeLimit;
+#if defined(IPOPT_VERSION_MINOR) && \
+    (IPOPT_VERSION_MAJOR > 3 || (IPOPT_VERSION_MAJOR == 3 && IPOPT_VERSION_MINOR >= 14))
+    case Ipopt::Maximum_WallTime_Exceeded:
+      return IpoptStatus::kTimeLimit;
+#endif
+    case Ipopt::Not_Enough_Degrees_Of_Freedom:
+      return IpoptStatus::kTooFewVariables;
+    case Ipopt::Invalid_Number_Detected:
+      return IpoptStatus::kEvaluationFailed;
+    case Ipopt::Insufficient_Memory:
+      return IpoptStatus::kOutOfMemory;
+    default:
+      return IpoptStatus::kInternalError;
+  }
+}
+
+/// An object that counts its references, as Ipopt wants them.
+template <typename T, typename... Args>
+Ipopt::SmartPtr<T> make_counted(Args&&... args) {
+  return new T(std::forward<Args>(args)...);  // NOLINT(hbar-naked-new): the SmartPtr owns it
+}
+
+}  // namespace
+
+IpoptResult run_ipopt(Nlp& nlp, const IpoptOptions& options, std::ostream* journal) {
+  validate(nlp);
+  validate_hessian(nlp, options.hessian);
+  if (!(options.max_wall_time > 0.0)) {
+    throw InvalidInput(concat("ipopt: max_wall_time is ", options.max_wall_time,
+                              "; expected a positive number of seconds"));
+  }
+  if (!(options.constraint_tolerance > 0.0)) {
+    throw InvalidInput(concat("ipopt: constraint_tolerance is ", options.constraint_tolerance,
+                              "; expected a positive number"));
+  }
+  const ExclusiveRun run;
+  // Without a console Ipopt prints nothing, whatever happens.
+  const auto application = make_counted<Ipopt::IpoptApplication>(options.print_level > 0);
+  if (journal != nullptr) {
+    const auto stream = make_counted<Ipopt::StreamJournal>("hbar", Ipopt::J_WARNING);
+    stream->SetOutputStream(journal);
+    application->Jnlst()->AddJournal(Ipopt::SmartPtr<Ipopt::Journal>(Ipopt::GetRawPtr(stream)));
+  }
+  set_ipopt_options(*application, options);
+  // The empty name stands for "read no file of options".
+  const std::string no_file;
+  Ipopt::ApplicationReturnStatus status = application->Initialize(no_file);
+  if (status != Ipopt::Solve_Succeeded) {
+    throw InvalidInput(concat("ipopt: Ipopt refused its options (", static_cast<int>(status), ")"));
+  }
+  const auto adapter = make_counted<Adapter>(nlp, options);
+  status = application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(adapter)));
+  if (adapter->exception() != nullptr) std::rethrow_exception(adapter->exception());
+  return adapter->take_result(translate(status), nlp);
+}
+
+IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {
+  return run_ipopt(nlp, options, nullptr);
+}
+
+}  // namespace hbar::solvers

@@ -1,8 +1,0 @@
-#pragma once
-
-#include "hbar/core/model.h"
-#include "hbar/solvers/newton.h"
-// planted: floor
-#include "hbar/scene/description.h"
-// planted: floor
-#include "hbar/scene/description.h"

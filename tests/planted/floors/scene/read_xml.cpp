@@ -1,5 +1,0 @@
-#include "hbar/scene/read_xml.h"
-
-#include <tinyxml2.h>
-// planted: third-party
-#include <fmt/format.h>

@@ -1,0 +1,4 @@
+#pragma once
+
+// planted: layer
+#include "hbar/core/scene/description.h"

@@ -1,0 +1,7 @@
+#pragma once
+
+#include "hbar/core/model/model.h"
+// planted: layer
+#include "hbar/contact/contact_forces.h"
+// planted: layer
+#include "hbar/core/stray/stray.h"
