@@ -17,6 +17,7 @@
 #include "hbar/adjoint/derivatives/check_gradient.h"
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/model/model_builder.h"
 
 int main() {
@@ -35,15 +36,15 @@ int main() {
   hbar::SimulationOptions options;
   options.integrator = "bdf2";
   options.h = 0.01;
-  hbar::Simulator simulator(model, parameters, options);
-  hbar::Inputs inputs = simulator.nominal_inputs();
+  hbar::Horizon horizon(model, parameters, options);
+  hbar::Inputs inputs = horizon.nominal_inputs();
   inputs.q0(0) = 1.2;
-  const hbar::Trajectory trajectory = simulator.rollout(inputs).trajectory();
+  const hbar::Trajectory trajectory = simulate(horizon, inputs).trajectory();
   std::printf("angle after 1 s: %.6f rad\n", trajectory.q_at_step(100)(0));
 
   // 3. The objective's gradient with respect to everything, in one backward sweep.
   const hbar::Objective objective(hbar::squared_final_position());
-  const hbar::Gradient gradient = hbar::gradient(simulator, trajectory, objective);
+  const hbar::Gradient gradient = hbar::gradient(horizon, trajectory, objective);
   std::printf("objective 1/2 angle^2: %.6f\n", gradient.value);
   std::printf("d objective / d initial angle:       %10.6f\n", gradient.q0(0));
   std::printf("d objective / d initial rate:        %10.6f\n", gradient.qdot0(0));
@@ -51,7 +52,7 @@ int main() {
   std::printf("d objective / d joint.hinge.damping: %10.6f\n", gradient.p(1));
 
   // 4. Proof: finite differences, the order of the remainder, independent tangents.
-  hbar::Problem problem{std::move(simulator), objective, inputs};
+  hbar::Problem problem{std::move(horizon), objective, inputs};
   const bool confirmed = hbar::check_gradient(problem).passed();
   std::printf("gradient confirmed: %s\n", confirmed ? "yes" : "no");
   return confirmed ? 0 : 1;

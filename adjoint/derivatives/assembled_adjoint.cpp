@@ -3,15 +3,16 @@
 #include <utility>
 
 #include "hbar/adjoint/derivatives/stage_weights.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 
 namespace hbar {
 
-AssembledAdjoint::AssembledAdjoint(Simulator& simulator, solvers::SolverFactory factory)
-    : simulator_(simulator), system_(simulator, std::move(factory)) {}
+AssembledAdjoint::AssembledAdjoint(const Horizon& horizon, solvers::SolverFactory factory)
+    : horizon_(horizon), reader_(horizon), system_(horizon, std::move(factory)) {}
 
 Gradient AssembledAdjoint::pull_back(const Trajectory& trajectory,
                                      const TrajectoryPartials& partials) {
-  const StageWeights weights = stage_weights(simulator_, trajectory, partials);
+  const StageWeights weights = stage_weights(horizon_, trajectory, partials);
   const Eigen::Index stages = weights.q_bar.cols() - 1;
   const Linearization& system = system_.update(trajectory);
   const Eigen::VectorXd y_bar = weights.q_bar.rightCols(stages).reshaped();
@@ -27,7 +28,7 @@ Gradient AssembledAdjoint::pull_back(const Trajectory& trajectory,
 }
 
 Gradient AssembledAdjoint::gradient(const Trajectory& trajectory, const Objective& objective) {
-  const TrajectoryValues values = simulator_.values(trajectory);
+  const TrajectoryValues values = reader_.values(trajectory);
   Gradient out = pull_back(trajectory, objective.partials(values));
   out.value = objective.value(values);
   return out;

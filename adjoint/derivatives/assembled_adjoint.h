@@ -2,19 +2,20 @@
 
 #include "hbar/adjoint/derivatives/factorized_linearization.h"
 #include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 
 namespace hbar {
 
 /// The gradient (20), (21) by its matrices: H̄ᵀ z̄ = ȳ with any sparse solver, then
 /// ∂Ψ/∂p − z̄ᵀ ∂ḡ/∂p. What AdjointSweep does without them, for comparing solvers and as a witness.
 ///
-/// Holds its workspace for one simulator and belongs to one thread at a time.
+/// Holds its workspace for one horizon and belongs to one thread at a time.
 class AssembledAdjoint {
  public:
   /// @param factory  of the solver for H̄; null means block substitution
-  explicit AssembledAdjoint(Simulator& simulator, solvers::SolverFactory factory = nullptr);
+  explicit AssembledAdjoint(const Horizon& horizon, solvers::SolverFactory factory = nullptr);
 
-  /// @param trajectory  whole, of this simulator
+  /// @param trajectory  whole, of this horizon
   /// @throws NumericalFailure if H̄ is singular or the residual is too large
   [[nodiscard]] Gradient gradient(const Trajectory& trajectory, const Objective& objective);
 
@@ -29,7 +30,8 @@ class AssembledAdjoint {
   [[nodiscard]] const solvers::LinearSolver& solver() const { return system_.solver(); }
 
  private:
-  Simulator& simulator_;
+  Horizon horizon_;
+  ValueReader reader_;
   FactorizedLinearization system_;
   Eigen::VectorXd z_bar_;
 };

@@ -8,6 +8,8 @@
 
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/derivatives/tangent.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/contact/contact_forces.h"
 
 namespace hbar {
@@ -59,14 +61,14 @@ double probe_size(const Model& model, const Parameter& parameter) {
 }
 
 std::vector<InputClass> input_classes(const Problem& problem) {
-  const ParameterSet& set = problem.simulator.parameters();
+  const ParameterSet& set = problem.horizon.parameters();
   std::vector<InputClass> classes;
   for (const ParameterKind kind : parameter_kinds()) {
     InputClass next{std::string(kind_name(kind)), {}, {}};
     for (int i = 0; i < set.size(); ++i) {
       if (set[i].kind == kind) {
         next.entries.push_back(i);
-        next.scales.push_back(probe_size(problem.simulator.model(), set[i]));
+        next.scales.push_back(probe_size(problem.horizon.model(), set[i]));
       }
     }
     classes.push_back(std::move(next));
@@ -88,10 +90,9 @@ std::vector<InputClass> input_classes(const Problem& problem) {
   return classes;
 }
 
-Directions as_directions(const Simulator& simulator, const Inputs& shape,
-                         const Eigen::VectorXd& flat) {
+Directions as_directions(const Horizon& horizon, const Inputs& shape, const Eigen::VectorXd& flat) {
   const Inputs parts = unflatten(shape, flat);
-  Directions out = Directions::zero(simulator, 1);
+  Directions out = Directions::zero(horizon, 1);
   out.p.col(0) = parts.p;
   out.u.col(0) = parts.u.reshaped();
   out.q0.col(0) = parts.q0;
@@ -122,16 +123,15 @@ double log_slope(const std::vector<double>& x, const std::vector<double>& y) {
 /// differences across such a place mix the derivatives of both sides.
 class PieceReader {
  public:
-  explicit PieceReader(Simulator& simulator)
-      : simulator_(simulator),
-        mechanism_(nominal_mechanism<double>(simulator.model())),
-        motion_(simulator.model().tree()),
-        contacts_(simulator.model()),
-        none_(Eigen::VectorXd::Zero(simulator.model().dof())) {}
+  explicit PieceReader(const Horizon& horizon)
+      : horizon_(horizon),
+        motion_(horizon.model().tree()),
+        contacts_(horizon.model()),
+        none_(Eigen::VectorXd::Zero(horizon.model().dof())) {}
 
   /// Numbers that are the same for two trajectories exactly if no such place separates them.
   std::vector<int> read(const Trajectory& trajectory, const TrajectoryValues& values) {
-    const Model& model = simulator_.model();
+    const Model& model = horizon_.model();
     std::vector<int> piece;
     for (int k = 0; k <= trajectory.step_count(); ++k) {
       piece.push_back(trajectory.timeline.step_end(k));
@@ -140,10 +140,9 @@ class PieceReader {
       piece.insert(piece.end(), {change.stage, change.node});
     }
     if (model.contact_count() > 0) {
-      apply_parameters<double>(model, simulator_.parameters(), trajectory.inputs.p, mechanism_);
       const int first = values.measured.rows() > 0 ? 0 : 1;  // measured at the start, too
       for (int stage = first; stage < trajectory.timeline.stage_count(); ++stage) {
-        read_contacts(trajectory.q.col(stage), trajectory.qdot.col(stage), piece);
+        read_contacts(trajectory, stage, piece);
       }
     }
     read_sensors(values, piece);
@@ -151,11 +150,11 @@ class PieceReader {
   }
 
  private:
-  void read_contacts(const Eigen::VectorXd& q, const Eigen::VectorXd& qdot,
-                     std::vector<int>& piece) {
-    const Model& model = simulator_.model();
-    compute_motion<double>(model.tree(), mechanism_, q, qdot, none_, motion_);
-    contacts_.linearize(mechanism_, motion_);
+  void read_contacts(const Trajectory& trajectory, int stage, std::vector<int>& piece) {
+    const Model& model = horizon_.model();
+    compute_motion<double>(model.tree(), *trajectory.mechanism, trajectory.q.col(stage),
+                           trajectory.qdot.col(stage), none_, motion_);
+    contacts_.linearize(*trajectory.mechanism, motion_);
     for (const ActivePair<double>& pair : contacts_.active()) {
       const Contact& contact = model.contact(pair.contact);
       const bool own = std::holds_alternative<OwnShape>(contact.surface);
@@ -187,7 +186,7 @@ class PieceReader {
   void read_sensors(const TrajectoryValues& values, std::vector<int>& piece) const {
     for (Eigen::Index k = 0; k < values.tactile.cols(); ++k) {
       Eigen::Index at = 0;
-      for (const TactileSensor& sensor : simulator_.model().tactile_sensors()) {
+      for (const TactileSensor& sensor : horizon_.model().tactile_sensors()) {
         for (Eigen::Index i = 0; i < sensor.points.cols(); ++i, at += 3) {
           const Eigen::Vector3d reading = values.tactile.col(k).segment<3>(at);
           const double bound = sensor.coefficients.mu * std::abs(reading[2]);
@@ -198,8 +197,7 @@ class PieceReader {
     }
   }
 
-  Simulator& simulator_;
-  Mechanism<double> mechanism_;
+  Horizon horizon_;
   Motion<double> motion_;
   ContactForces<double> contacts_;
   Eigen::VectorXd none_;
@@ -211,20 +209,20 @@ class Prober {
   Prober(Problem& problem, const GradientCheckOptions& options)
       : problem_(problem),
         options_(options),
-        simulator_(tightened(problem.simulator)),
-        pieces_(simulator_),
+        horizon_(tightened(problem.horizon)),
+        pieces_(horizon_),
         random_(options.seed) {
-    trajectory_ = simulator_.rollout(problem.inputs).trajectory();
-    const TrajectoryValues values = simulator_.values(trajectory_);
+    trajectory_ = simulate(horizon_, problem.inputs).trajectory();
+    const TrajectoryValues values = read_values(horizon_, trajectory_);
     partials_ = std::make_unique<TrajectoryPartials>(problem.objective.partials(values));
     value_ = problem.objective.value(values);
-    AdjointSweep sweep(simulator_);
+    AdjointSweep sweep(horizon_);
     const Gradient g = sweep.pull_back(trajectory_, *partials_);
     adjoint_norm_ = sweep.adjoint().norm();
     gradient_ = flatten(g.p, g.u, g.q0, g.qdot0);
     x_ = flatten(problem.inputs.p, problem.inputs.u, problem.inputs.q0, problem.inputs.qdot0);
     piece_ = pieces_.read(trajectory_, values);
-    tangent_ = std::make_unique<TangentSweep>(simulator_);
+    tangent_ = std::make_unique<TangentSweep>(horizon_);
   }
 
   GradientCheckRow check(const InputClass& inputs) {
@@ -246,19 +244,19 @@ class Prober {
   }
 
  private:
-  static Simulator tightened(const Simulator& simulator) {
-    SimulationOptions options = simulator.options();
+  static Horizon tightened(const Horizon& horizon) {
+    SimulationOptions options = horizon.options();
     options.newton.rtol = std::min(options.newton.rtol, 1e-13);
-    return Simulator(simulator.model(), simulator.parameters(), options);
+    return horizon.with(options);
   }
 
   /// Ψ; nothing where the simulation fails or x is on another smooth piece than the nominal inputs.
   std::optional<double> value_at(const Eigen::VectorXd& x) {
-    const Rollout rollout = simulator_.rollout(unflatten(problem_.inputs, x));
+    const Rollout rollout = simulate(horizon_, unflatten(problem_.inputs, x));
     if (!rollout.converged()) {
       return std::nullopt;
     }
-    const TrajectoryValues values = simulator_.values(rollout.trajectory());
+    const TrajectoryValues values = read_values(horizon_, rollout.trajectory());
     if (pieces_.read(rollout.trajectory(), values) != piece_) {
       return std::nullopt;
     }
@@ -287,7 +285,7 @@ class Prober {
 
   /// |⟨z̄, b⟩ − ⟨ȳ, H̄⁻¹ b⟩| over the larger of the two sides' norm products, b = ∂ḡ·d.
   double dot_gap(const Eigen::VectorXd& d, double slope, double scale) {
-    const Directions directions = as_directions(simulator_, problem_.inputs, d);
+    const Directions directions = as_directions(horizon_, problem_.inputs, d);
     const Tangents tangents = tangent_->push_forward(trajectory_, directions);
     const double product = norm_product(*partials_, tangents);
     const double dual_product = adjoint_norm_ * tangent_->right_hand_sides().norm();
@@ -346,7 +344,7 @@ class Prober {
 
   Problem& problem_;
   const GradientCheckOptions& options_;
-  Simulator simulator_;
+  Horizon horizon_;
   PieceReader pieces_;
   std::mt19937 random_;
   double value_ = 0.0;

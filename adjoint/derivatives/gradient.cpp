@@ -4,6 +4,9 @@
 
 #include "hbar/adjoint/outputs/instant_outputs.h"
 #include "hbar/adjoint/stage/parameter_derivatives.h"
+#include "hbar/adjoint/trajectory/history.h"
+#include "hbar/adjoint/trajectory/horizon.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/model/drives.h"
 
@@ -17,25 +20,25 @@ constexpr int kRefinements = 4;
 }  // namespace
 
 struct AdjointSweep::Workspace {
-  explicit Workspace(Simulator& s)
-      : simulator(s),
-        mechanism(nominal_mechanism<double>(s.model())),
-        history(s.model()),
-        stage(s.model()),
-        point(s.model()),
-        outputs(s.model(), s.options().measurements),
+  explicit Workspace(const Horizon& h)
+      : horizon(h),
+        reader(h),
+        history(h.model()),
+        stage(h.model()),
+        point(h.model()),
+        outputs(h.model(), h.options().measurements),
         rows(outputs.zero_rows()),
-        y_start{Eigen::VectorXd(s.model().dof()), Eigen::VectorXd(s.model().dof())},
-        block(s.model().dof(), s.model().dof()),
-        lu(s.model().dof()) {}
+        y_start{Eigen::VectorXd(h.model().dof()), Eigen::VectorXd(h.model().dof())},
+        block(h.model().dof(), h.model().dof()),
+        lu(h.model().dof()) {}
 
   void add_variables(const Trajectory& trajectory, const TrajectoryPartials& partials, int k,
                      Gradient& out);
   void solve_block(const Trajectory& trajectory, int s);
   void sweep_stage(const Trajectory& trajectory, int s, Gradient& out);
 
-  Simulator& simulator;
-  Mechanism<double> mechanism;
+  Horizon horizon;
+  ValueReader reader;
   History history;
   StageResidual<double> stage;
   StagePoint<double> point;
@@ -65,9 +68,10 @@ void AdjointSweep::Workspace::add_variables(const Trajectory& trajectory,
   rows.v = partials.v.col(k);
   rows.tactile = partials.tactile.col(k);
   rows.measured = partials.measured.col(k);
-  outputs.pull_back(mechanism, simulator.parameters(), trajectory.inputs.p, stage.motion(),
-                    trajectory.q.col(s), trajectory.qdot.col(s), trajectory.inputs.u.col(step),
-                    rows, q_bar.col(s), qdot_bar.col(s), out.u.col(step), out.p);
+  outputs.pull_back(*trajectory.mechanism, horizon.parameters(), trajectory.inputs.p,
+                    stage.motion(), trajectory.q.col(s), trajectory.qdot.col(s),
+                    trajectory.inputs.u.col(step), rows, q_bar.col(s), qdot_bar.col(s),
+                    out.u.col(step), out.p);
 }
 
 /// z = H_ss⁻ᵀ y, refined against the exact block through its transposed product.
@@ -127,14 +131,14 @@ void AdjointSweep::Workspace::sweep_stage(const Trajectory& trajectory, int s, G
   y_start.qdot = c * z.cwiseProduct(forces.by_start_qdot);
   history.scatter(trajectory, s, y_qdot, y_a, y_start, q_bar, qdot_bar);
   const int step = trajectory.timeline.stage(s).step;
-  for_each_drive(simulator.model(), [&](int k, int control) {
+  for_each_drive(horizon.model(), [&](int k, int control) {
     out.u(control, step) += c * z[k] * forces.by_u[control];
   });
-  add_parameter_gradient<double>(mechanism, simulator.parameters(), trajectory.inputs.p, stage,
-                                 point, z, -1.0, out.p);
+  add_parameter_gradient<double>(*trajectory.mechanism, horizon.parameters(), trajectory.inputs.p,
+                                 stage, point, z, -1.0, out.p);
 }
 
-AdjointSweep::AdjointSweep(Simulator& simulator) : work_(std::make_unique<Workspace>(simulator)) {}
+AdjointSweep::AdjointSweep(const Horizon& horizon) : work_(std::make_unique<Workspace>(horizon)) {}
 AdjointSweep::~AdjointSweep() = default;
 AdjointSweep::AdjointSweep(AdjointSweep&&) noexcept = default;
 AdjointSweep& AdjointSweep::operator=(AdjointSweep&&) noexcept = default;
@@ -145,9 +149,8 @@ int AdjointSweep::refactorized() const { return work_->refactorized; }
 
 Gradient AdjointSweep::pull_back(const Trajectory& trajectory, const TrajectoryPartials& partials) {
   Workspace& w = *work_;
-  const Model& model = w.simulator.model();
+  const Model& model = w.horizon.model();
   const Timeline& timeline = trajectory.timeline;
-  apply_parameters<double>(model, w.simulator.parameters(), trajectory.inputs.p, w.mechanism);
   w.q_bar.setZero(model.dof(), timeline.stage_count());
   w.qdot_bar.setZero(model.dof(), timeline.stage_count());
   w.g.resize(model.dof());
@@ -161,8 +164,8 @@ Gradient AdjointSweep::pull_back(const Trajectory& trajectory, const TrajectoryP
   }
   int k = timeline.step_count();
   for (int s = timeline.last_stage(); s > 0; --s) {
-    w.simulator.set_point(trajectory, s, w.point);
-    w.stage.linearize(w.mechanism, w.point, w.g);
+    w.history.set_point(trajectory, s, w.point);
+    w.stage.linearize(*trajectory.mechanism, w.point, w.g);
     if (s == timeline.step_end(k)) {
       w.add_variables(trajectory, partials, k, out);
       --k;
@@ -172,7 +175,7 @@ Gradient AdjointSweep::pull_back(const Trajectory& trajectory, const TrajectoryP
   w.point.q = trajectory.q.col(0);
   w.point.qdot = trajectory.qdot.col(0);
   w.point.a.setZero();
-  w.stage.linearize(w.mechanism, w.point, w.g);
+  w.stage.linearize(*trajectory.mechanism, w.point, w.g);
   w.add_variables(trajectory, partials, 0, out);
   out.q0 = w.q_bar.col(0);
   out.qdot0 = w.qdot_bar.col(0);
@@ -180,14 +183,15 @@ Gradient AdjointSweep::pull_back(const Trajectory& trajectory, const TrajectoryP
 }
 
 Gradient AdjointSweep::gradient(const Trajectory& trajectory, const Objective& objective) {
-  const TrajectoryValues values = work_->simulator.values(trajectory);
+  const TrajectoryValues values = work_->reader.values(trajectory);
   Gradient out = pull_back(trajectory, objective.partials(values));
   out.value = objective.value(values);
   return out;
 }
 
-Gradient gradient(Simulator& simulator, const Trajectory& trajectory, const Objective& objective) {
-  return AdjointSweep(simulator).gradient(trajectory, objective);
+Gradient gradient(const Horizon& horizon, const Trajectory& trajectory,
+                  const Objective& objective) {
+  return AdjointSweep(horizon).gradient(trajectory, objective);
 }
 
 }  // namespace hbar

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <memory>
+
 #include "hbar/adjoint/terms/objective.h"
 
 namespace hbar {
+
+class Horizon;
+struct Trajectory;
 
 /// dΨ/d(p, u, q₀, q̇₀), shaped like Inputs, and Ψ itself.
 struct Gradient {
@@ -20,15 +25,15 @@ struct Gradient {
 /// away from the solution, and refined against the exact block until its residual is at rounding;
 /// where that does not converge, or factors were not kept, the block is factorised anew.
 ///
-/// Holds its workspace for one simulator and belongs to one thread at a time.
+/// Holds its workspace for one horizon and belongs to one thread at a time.
 class AdjointSweep {
  public:
-  explicit AdjointSweep(Simulator& simulator);
+  explicit AdjointSweep(const Horizon& horizon);
   ~AdjointSweep();
   AdjointSweep(AdjointSweep&&) noexcept;
   AdjointSweep& operator=(AdjointSweep&&) noexcept;
 
-  /// @param trajectory  whole, of this simulator
+  /// @param trajectory  whole, of this horizon
   /// @throws NumericalFailure if a stage's block is singular or its residual stays above 1e-11
   [[nodiscard]] Gradient gradient(const Trajectory& trajectory, const Objective& objective);
 
@@ -50,7 +55,7 @@ class AdjointSweep {
 };
 
 /// dΨ of a trajectory: one AdjointSweep.
-[[nodiscard]] Gradient gradient(Simulator& simulator, const Trajectory& trajectory,
+[[nodiscard]] Gradient gradient(const Horizon& horizon, const Trajectory& trajectory,
                                 const Objective& objective);
 
 }  // namespace hbar

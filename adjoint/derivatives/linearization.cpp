@@ -1,6 +1,9 @@
 #include "hbar/adjoint/derivatives/linearization.h"
 
 #include "hbar/adjoint/stage/parameter_derivatives.h"
+#include "hbar/adjoint/trajectory/flat_stencil.h"
+#include "hbar/adjoint/trajectory/history.h"
+#include "hbar/adjoint/trajectory/horizon.h"
 #include "hbar/core/model/drives.h"
 
 namespace hbar {
@@ -23,20 +26,20 @@ const StencilEntry<Weight>* find_entry(const FlatStencil<Weight>& stencil, int s
 }  // namespace
 
 struct Linearizer::Workspace {
-  explicit Workspace(Simulator& s)
-      : simulator(s),
-        mechanism(nominal_mechanism<double>(s.model())),
-        stage(s.model()),
-        point(s.model()),
-        pattern(residual_pattern(s.model())) {
-    const int n = s.model().dof();
+  explicit Workspace(const Horizon& h)
+      : horizon(h),
+        history(h.model()),
+        stage(h.model()),
+        point(h.model()),
+        pattern(residual_pattern(h.model())) {
+    const int n = h.model().dof();
     for (Eigen::MatrixXd* matrix : {&G_q, &G_v, &cM, &block}) {
       matrix->setZero(n, n);
     }
     g.setZero(n);
-    columns.setZero(n, s.parameters().size());
-    for (const ParameterBlock& b : s.parameters().blocks()) {
-      rows_of_block.push_back(parameter_rows(s.model(), b));
+    columns.setZero(n, h.parameters().size());
+    for (const ParameterBlock& b : h.parameters().blocks()) {
+      rows_of_block.push_back(parameter_rows(h.model(), b));
     }
   }
 
@@ -51,8 +54,8 @@ struct Linearizer::Workspace {
   void fill_parameters(const Trajectory& trajectory, int s);
   void fill_controls(const Trajectory& trajectory, int s);
 
-  Simulator& simulator;
-  Mechanism<double> mechanism;
+  Horizon horizon;
+  History history;
   StageResidual<double> stage;
   StagePoint<double> point;
   std::vector<std::vector<int>> pattern;
@@ -89,7 +92,7 @@ void Linearizer::Workspace::lay_out(const Timeline& t) {
   out.H = BlockMatrix(stages, stages, blocks, pattern);
   out.dg_dq0 = BlockMatrix(stages, 1, initial, pattern);
   out.dg_dqdot0 = BlockMatrix(stages, 1, initial, pattern);
-  out.block_sizes.assign(static_cast<std::size_t>(stages), simulator.model().dof());
+  out.block_sizes.assign(static_cast<std::size_t>(stages), horizon.model().dof());
   lay_out_parameters(stages);
   lay_out_controls(t);
   timeline = t;
@@ -97,8 +100,8 @@ void Linearizer::Workspace::lay_out(const Timeline& t) {
 }
 
 void Linearizer::Workspace::lay_out_parameters(int stages) {
-  const int n = simulator.model().dof();
-  const ParameterSet& set = simulator.parameters();
+  const int n = horizon.model().dof();
+  const ParameterSet& set = horizon.parameters();
   Eigen::VectorXi counts(set.size());
   std::vector<std::size_t> block_of(static_cast<std::size_t>(set.size()));
   for (std::size_t b = 0; b < set.blocks().size(); ++b) {
@@ -117,7 +120,7 @@ void Linearizer::Workspace::lay_out_parameters(int stages) {
 }
 
 void Linearizer::Workspace::lay_out_controls(const Timeline& t) {
-  const Model& model = simulator.model();
+  const Model& model = horizon.model();
   const int n = model.dof();
   const int controls = model.control_count();
   std::vector<int> row(static_cast<std::size_t>(controls));
@@ -144,7 +147,7 @@ void Linearizer::Workspace::fill_block(
   block = w.qdot * G_v + w.a * cM;
   block.diagonal() -= c * (w.start_q * forces.by_start_q + w.start_qdot * forces.by_start_qdot);
   for (const auto& [node, stencil] : switched) {
-    const int first = simulator.model().tree().node(node).coordinates.begin;
+    const int first = horizon.model().tree().node(node).coordinates.begin;
     const StencilEntry<Matrix3d>& W = *find_entry(stencil, j);
     block.middleCols<3>(first) = G_v.middleCols<3>(first) * W.qdot + cM.middleCols<3>(first) * W.a;
     block.block<3, 3>(first, first) -=
@@ -164,7 +167,7 @@ void Linearizer::Workspace::fill_qdot0(
   block = plain.a_by_qdot0 * cM;
   block.diagonal() -= (c * plain.start_qdot_by_qdot0) * forces.by_start_qdot;
   for (const auto& [node, stencil] : switched) {
-    const int first = simulator.model().tree().node(node).coordinates.begin;
+    const int first = horizon.model().tree().node(node).coordinates.begin;
     block.middleCols<3>(first) = cM.middleCols<3>(first) * stencil.a_by_qdot0;
     block.block<3, 3>(first, first) -=
         c * (forces.by_start_qdot.segment<3>(first).asDiagonal() * stencil.start_qdot_by_qdot0);
@@ -172,8 +175,8 @@ void Linearizer::Workspace::fill_qdot0(
 }
 
 void Linearizer::Workspace::fill_parameters(const Trajectory& trajectory, int s) {
-  const ParameterSet& set = simulator.parameters();
-  parameter_columns<double>(mechanism, set, trajectory.inputs.p, stage, point, columns);
+  const ParameterSet& set = horizon.parameters();
+  parameter_columns<double>(*trajectory.mechanism, set, trajectory.inputs.p, stage, point, columns);
   for (std::size_t b = 0; b < set.blocks().size(); ++b) {
     const ParameterBlock& owner = set.blocks()[b];
     const auto count = static_cast<int>(rows_of_block[b].size());
@@ -187,7 +190,7 @@ void Linearizer::Workspace::fill_parameters(const Trajectory& trajectory, int s)
 }
 
 void Linearizer::Workspace::fill_controls(const Trajectory& trajectory, int s) {
-  const int controls = simulator.model().control_count();
+  const int controls = horizon.model().control_count();
   const int step = trajectory.timeline.stage(s).step;
   const int rank = s - 1 - trajectory.timeline.step_end(step);
   for (int i = 0; i < controls; ++i) {
@@ -197,15 +200,15 @@ void Linearizer::Workspace::fill_controls(const Trajectory& trajectory, int s) {
 }
 
 void Linearizer::Workspace::fill_stage(const Trajectory& trajectory, int s) {
-  simulator.set_point(trajectory, s, point);
-  stage.linearize(mechanism, point, g);
+  history.set_point(trajectory, s, point);
+  stage.linearize(*trajectory.mechanism, point, g);
   stage.jacobian({1.0, 0.0, 0.0}, G_q);
   stage.jacobian({0.0, 1.0, 0.0}, G_v);
   stage.jacobian({0.0, 0.0, 1.0}, cM);
   const FlatStencil<double> plain = flat_stencil(timeline, s);
   std::vector<std::pair<int, FlatStencil<Matrix3d>>> switched;
   for (const int node : nodes_with_chart_switch(trajectory, s)) {
-    switched.emplace_back(node, flat_stencil(simulator.model(), trajectory, s, node));
+    switched.emplace_back(node, flat_stencil(horizon.model(), trajectory, s, node));
   }
   std::size_t index = first_block[static_cast<std::size_t>(s)];
   for (const StencilEntry<double>& entry : plain.entries) {
@@ -222,7 +225,7 @@ void Linearizer::Workspace::fill_stage(const Trajectory& trajectory, int s) {
   fill_controls(trajectory, s);
 }
 
-Linearizer::Linearizer(Simulator& simulator) : work_(std::make_unique<Workspace>(simulator)) {}
+Linearizer::Linearizer(const Horizon& horizon) : work_(std::make_unique<Workspace>(horizon)) {}
 Linearizer::~Linearizer() = default;
 Linearizer::Linearizer(Linearizer&&) noexcept = default;
 Linearizer& Linearizer::operator=(Linearizer&&) noexcept = default;
@@ -234,8 +237,6 @@ const Linearization& Linearizer::linearize(const Trajectory& trajectory) {
   if (w.pattern_count == 0 || !(w.timeline == trajectory.timeline)) {
     w.lay_out(trajectory.timeline);
   }
-  apply_parameters<double>(w.simulator.model(), w.simulator.parameters(), trajectory.inputs.p,
-                           w.mechanism);
   for (int s = 1; s < trajectory.timeline.stage_count(); ++s) {
     w.fill_stage(trajectory, s);
   }

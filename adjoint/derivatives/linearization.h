@@ -1,10 +1,14 @@
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "hbar/adjoint/derivatives/block_matrix.h"
-#include "hbar/adjoint/trajectory/flat_stencil.h"
-#include "hbar/adjoint/trajectory/simulator.h"
 
 namespace hbar {
+
+class Horizon;
+struct Trajectory;
 
 /// The trajectory's linear system: ḡ(q̄, p, u, q₀, q̇₀) = 0 differentiated, as compressed sparse
 /// columns. Row block s − 1 belongs to stage s; so does column block s − 1 of H.
@@ -17,16 +21,16 @@ struct Linearization {
   std::vector<int> block_sizes;  ///< dof, once per stage                    [stages − 1]
 };
 
-/// Assembles Linearizations of one simulator's trajectories. Patterns are laid out once per
+/// Assembles Linearizations of one horizon's trajectories. Patterns are laid out once per
 /// timeline (in practice: once); then only values are overwritten.
 class Linearizer {
  public:
-  explicit Linearizer(Simulator& simulator);
+  explicit Linearizer(const Horizon& horizon);
   ~Linearizer();
   Linearizer(Linearizer&&) noexcept;
   Linearizer& operator=(Linearizer&&) noexcept;
 
-  /// @param trajectory  whole, of this simulator
+  /// @param trajectory  whole, of this horizon
   /// @returns  valid until the next call
   const Linearization& linearize(const Trajectory& trajectory);
 

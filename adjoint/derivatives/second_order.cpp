@@ -4,6 +4,8 @@
 
 #include "hbar/adjoint/outputs/instant_outputs.h"
 #include "hbar/adjoint/stage/parameter_derivatives.h"
+#include "hbar/adjoint/trajectory/history.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/dual_vectors.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/model/drives.h"
@@ -35,25 +37,24 @@ void require_shape(const Inputs& direction, const Inputs& inputs) {
 }  // namespace
 
 struct SecondOrderSweep::Workspace {
-  explicit Workspace(Simulator& s)
-      : simulator(s),
-        adjoint(s),
-        mechanism(nominal_mechanism<double>(s.model())),
-        stage(s.model()),
-        point(s.model()),
-        block(s.model().dof(), s.model().dof()),
-        g(s.model().dof()),
-        history(s.model()),
-        mechanism_d(nominal_mechanism<Dual>(s.model())),
-        stage_d(s.model()),
-        point_d(s.model()),
-        outputs(s.model(), s.options().measurements),
+  explicit Workspace(const Horizon& h)
+      : horizon(h),
+        adjoint(h),
+        stage(h.model()),
+        point(h.model()),
+        block(h.model().dof(), h.model().dof()),
+        g(h.model().dof()),
+        history(h.model()),
+        mechanism_d(nominal_mechanism<Dual>(h.model())),
+        stage_d(h.model()),
+        point_d(h.model()),
+        outputs(h.model(), h.options().measurements),
         rows(outputs.zero_rows()),
-        g_d(s.model().dof()),
-        qdot_past(s.model().dof()),
-        a_past(s.model().dof()),
-        y_start{VectorX<Dual>(s.model().dof()), VectorX<Dual>(s.model().dof())},
-        delta(s.model().dof()) {}
+        g_d(h.model().dof()),
+        qdot_past(h.model().dof()),
+        a_past(h.model().dof()),
+        y_start{VectorX<Dual>(h.model().dof()), VectorX<Dual>(h.model().dof())},
+        delta(h.model().dof()) {}
 
   [[nodiscard]] const Trajectory& trajectory() const { return *trajectory_; }
   void factorize();
@@ -63,12 +64,11 @@ struct SecondOrderSweep::Workspace {
   void solve_adjoint(int s);
   void sweep_stage(int s);
 
-  Simulator& simulator;
+  Horizon horizon;
   AdjointSweep adjoint;
   const Trajectory* trajectory_ = nullptr;
   TrajectoryPartials weights{TrajectoryValues{}};
   Gradient gradient;
-  Mechanism<double> mechanism;
   StageResidual<double> stage;
   StagePoint<double> point;
   Eigen::MatrixXd block;
@@ -96,11 +96,9 @@ struct SecondOrderSweep::Workspace {
 void SecondOrderSweep::Workspace::factorize() {
   const int last = trajectory().timeline.last_stage();
   factors.resize(static_cast<std::size_t>(last) + 1);
-  apply_parameters<double>(simulator.model(), simulator.parameters(), trajectory().inputs.p,
-                           mechanism);
   for (int s = 1; s <= last; ++s) {
-    simulator.set_point(trajectory(), s, point);
-    stage.linearize(mechanism, point, g);
+    history.set_point(trajectory(), s, point);
+    stage.linearize(*trajectory().mechanism, point, g);
     stage.newton_matrix(block);
     factors[static_cast<std::size_t>(s)].compute(block);
   }
@@ -139,7 +137,7 @@ void SecondOrderSweep::Workspace::add_outputs(int k) {
   const int s = trajectory().timeline.step_end(k);
   const int step = measured_step(k);
   rows = {v_weights.col(k), tactile_weights.col(k), measured_weights.col(k)};
-  outputs.pull_back(mechanism_d, simulator.parameters(), p_d,
+  outputs.pull_back(mechanism_d, horizon.parameters(), p_d,
                     outputs.motion_at(mechanism_d, q_d.col(s), qdot_d.col(s)), q_d.col(s),
                     qdot_d.col(s), u_d.col(step), rows, q_bar.col(s), qdot_bar.col(s),
                     u_bar.col(step), p_bar);
@@ -174,15 +172,15 @@ void SecondOrderSweep::Workspace::sweep_stage(int s) {
   y_start.qdot = c * z.cwiseProduct(forces.by_start_qdot);
   history.scatter<Dual>(trajectory(), q_d, qdot_d, s, y_qdot, y_a, y_start, q_bar, qdot_bar);
   const int step = trajectory().timeline.stage(s).step;
-  for_each_drive(simulator.model(), [&](int k, int control) {
+  for_each_drive(horizon.model(), [&](int k, int control) {
     u_bar(control, step) += c * z[k] * forces.by_u[control];
   });
-  add_parameter_gradient<Dual>(mechanism_d, simulator.parameters(), p_d, stage_d, point_d, z, -1.0,
+  add_parameter_gradient<Dual>(mechanism_d, horizon.parameters(), p_d, stage_d, point_d, z, -1.0,
                                p_bar);
 }
 
-SecondOrderSweep::SecondOrderSweep(Simulator& simulator)
-    : work_(std::make_unique<Workspace>(simulator)) {}
+SecondOrderSweep::SecondOrderSweep(const Horizon& horizon)
+    : work_(std::make_unique<Workspace>(horizon)) {}
 SecondOrderSweep::~SecondOrderSweep() = default;
 SecondOrderSweep::SecondOrderSweep(SecondOrderSweep&&) noexcept = default;
 SecondOrderSweep& SecondOrderSweep::operator=(SecondOrderSweep&&) noexcept = default;
@@ -202,7 +200,7 @@ const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
   const Trajectory& trajectory = w.trajectory();
   require_shape(direction, trajectory.inputs);
   w.p_d = dual_vector(trajectory.inputs.p, direction.p);
-  apply_parameters<Dual>(w.simulator.model(), w.simulator.parameters(), w.p_d, w.mechanism_d);
+  apply_parameters<Dual>(w.horizon.model(), w.horizon.parameters(), w.p_d, w.mechanism_d);
   w.u_d = dual_matrix(trajectory.inputs.u, direction.u);
   w.q_d = trajectory.q.cast<Dual>();
   w.qdot_d = trajectory.qdot.cast<Dual>();
@@ -221,12 +219,12 @@ const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
     w.qdot_d.col(s) = w.point_d.qdot;
   }
   const int steps = trajectory.step_count();
-  const Model& model = w.simulator.model();
+  const Model& model = w.horizon.model();
   w.tangent.q.resize(model.dof(), steps + 1);
   w.tangent.qdot.resize(model.dof(), steps + 1);
   w.tangent.v.resize(model.variable_count(), steps + 1);
   w.tangent.tactile.resize(model.tactile_count(), steps + 1);
-  w.tangent.measured.resize(w.simulator.measured_count(), steps + 1);
+  w.tangent.measured.resize(w.horizon.measured_count(), steps + 1);
   w.tangent.u = direction.u;
   w.tangent.p = direction.p;
   for (int k = 0; k <= steps; ++k) {
@@ -270,15 +268,12 @@ const Gradient& SecondOrderSweep::product(const TrajectoryPartials* weights_tang
   return w.out;
 }
 
-HessianProduct::HessianProduct(Simulator& simulator, Objective objective)
-    : simulator_(simulator),
-      objective_(std::move(objective)),
-      sweep_(simulator),
-      adjoint_(simulator) {}
+HessianProduct::HessianProduct(const Horizon& horizon, Objective objective)
+    : reader_(horizon), objective_(std::move(objective)), sweep_(horizon), adjoint_(horizon) {}
 
 const Gradient& HessianProduct::set_point(const Trajectory& trajectory) {
   trajectory_ = &trajectory;
-  values_ = simulator_.values(trajectory);
+  values_ = reader_.values(trajectory);
   places_ = objective_.second_places(values_);
   second_ = objective_.second_partials(values_);
   gradient_ = sweep_.set_point(trajectory, objective_.partials(values_));

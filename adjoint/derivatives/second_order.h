@@ -2,6 +2,8 @@
 
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/terms/value_access.h"
+#include "hbar/adjoint/trajectory/inputs.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/solvers/nlp/nlp.h"
 
 namespace hbar {
@@ -15,10 +17,10 @@ namespace hbar {
 /// with the inputs, and with y where y moves too.
 ///
 /// A point is set once; then each direction costs one push_forward and one product. Holds its
-/// workspace for one simulator and belongs to one thread at a time.
+/// workspace for one horizon and belongs to one thread at a time.
 class SecondOrderSweep {
  public:
-  explicit SecondOrderSweep(Simulator& simulator);
+  explicit SecondOrderSweep(const Horizon& horizon);
   ~SecondOrderSweep();
   SecondOrderSweep(SecondOrderSweep&&) noexcept;
   SecondOrderSweep& operator=(SecondOrderSweep&&) noexcept;
@@ -26,7 +28,7 @@ class SecondOrderSweep {
   /// Takes a trajectory and weights y on its values: one adjoint sweep, and the factors of every
   /// stage's block.
   ///
-  /// @param trajectory  whole, of this simulator; must outlive the products
+  /// @param trajectory  whole, of this horizon; must outlive the products
   /// @returns           d(y·values)/d(inputs), without the value
   /// @throws NumericalFailure as AdjointSweep::pull_back
   const Gradient& set_point(const Trajectory& trajectory, const TrajectoryPartials& weights);
@@ -55,9 +57,9 @@ class SecondOrderSweep {
 class HessianProduct {
  public:
   /// @throws InvalidInput if a term of the objective has no second partials, naming it
-  HessianProduct(Simulator& simulator, Objective objective);
+  HessianProduct(const Horizon& horizon, Objective objective);
 
-  /// @param trajectory  whole, of this simulator; must outlive the products
+  /// @param trajectory  whole, of this horizon; must outlive the products
   /// @returns           Ψ and its gradient there
   const Gradient& set_point(const Trajectory& trajectory);
 
@@ -73,7 +75,7 @@ class HessianProduct {
                         solvers::HessianKind kind = solvers::HessianKind::kExact);
 
  private:
-  Simulator& simulator_;
+  ValueReader reader_;
   Objective objective_;
   SecondOrderSweep sweep_;
   AdjointSweep adjoint_;  // of products without curvature

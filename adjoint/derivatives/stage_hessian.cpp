@@ -11,18 +11,19 @@ VectorX<Dual> without_slope(const Eigen::VectorXd& values) { return values.cast<
 
 }  // namespace
 
-StageHessian::StageHessian(Simulator& simulator, Eigen::Index designs)
-    : simulator_(simulator),
-      stage_(simulator.model()),
-      outputs_(simulator.model(), simulator.options().measurements),
-      at_(simulator.model()),
-      point_(simulator.model()),
-      still_(nominal_mechanism<Dual>(simulator.model())),
-      moving_(static_cast<std::size_t>(designs), nominal_mechanism<Dual>(simulator.model())),
+StageHessian::StageHessian(const Horizon& horizon, Eigen::Index designs)
+    : horizon_(horizon),
+      stage_(horizon.model()),
+      outputs_(horizon.model(), horizon.options().measurements),
+      history_(horizon.model()),
+      at_(horizon.model()),
+      point_(horizon.model()),
+      still_(nominal_mechanism<Dual>(horizon.model())),
+      moving_(static_cast<std::size_t>(designs), nominal_mechanism<Dual>(horizon.model())),
       moving_p_(static_cast<std::size_t>(designs)),
-      g_(simulator.model().dof()) {
-  const Eigen::Index n = simulator.model().dof();
-  const Eigen::Index controls = simulator.model().control_count();
+      g_(horizon.model().dof()) {
+  const Eigen::Index n = horizon.model().dof();
+  const Eigen::Index controls = horizon.model().control_count();
   for (Eigen::MatrixXd* square : {&qq, &qv, &qa, &vv}) {
     square->setZero(n, n);
   }
@@ -33,20 +34,20 @@ StageHessian::StageHessian(Simulator& simulator, Eigen::Index designs)
   }
   du.setZero(designs, controls);
   dd.setZero(designs, designs);
-  by_p.setZero(simulator.parameters().size());
+  by_p.setZero(horizon.parameters().size());
   y_ = outputs_.zero_rows();
 }
 
 void StageHessian::set_parameters(const Eigen::VectorXd& p, const Eigen::MatrixXd& map_jacobian) {
   map_jacobian_ = map_jacobian;
   still_p_ = without_slope(p);
-  apply_parameters<Dual>(simulator_.model(), simulator_.parameters(), still_p_, still_);
+  apply_parameters<Dual>(horizon_.model(), horizon_.parameters(), still_p_, still_);
   for (std::size_t i = 0; i < moving_.size(); ++i) {
     moving_p_[i] = still_p_;
     for (Eigen::Index k = 0; k < p.size(); ++k) {
       moving_p_[i][k].slope = map_jacobian(k, static_cast<Eigen::Index>(i));
     }
-    apply_parameters<Dual>(simulator_.model(), simulator_.parameters(), moving_p_[i], moving_[i]);
+    apply_parameters<Dual>(horizon_.model(), horizon_.parameters(), moving_p_[i], moving_[i]);
   }
 }
 
@@ -69,7 +70,7 @@ void StageHessian::linearize_stage(const Mechanism<Dual>& mechanism) {
 /// Adds the outputs' gradients to by_q_, by_qdot_, by_u_ and by_p_.
 void StageHessian::linearize_outputs(const Mechanism<Dual>& mechanism, const VectorX<Dual>& p) {
   if (has_outputs_) {
-    outputs_.pull_back(mechanism, simulator_.parameters(), p,
+    outputs_.pull_back(mechanism, horizon_.parameters(), p,
                        outputs_.motion_at(mechanism, point_.q, point_.qdot), point_.q, point_.qdot,
                        point_.u, y_, by_q_, by_qdot_, by_u_, by_p_);
   }
@@ -81,14 +82,14 @@ void StageHessian::evaluate_design(Eigen::Index i, bool with_stage) {
   by_p_.setZero();
   if (with_stage) {
     linearize_stage(moving_[k]);
-    add_parameter_gradient<Dual>(moving_[k], simulator_.parameters(), moving_p_[k], stage_, point_,
+    add_parameter_gradient<Dual>(moving_[k], horizon_.parameters(), moving_p_[k], stage_, point_,
                                  z_, 1.0, by_p_);
     const JointForces<Dual>& forces = stage_.joint_forces();
     const double c = point_.c();
     da.row(i) = slopes_of(stage_.by_a());
     dsq.row(i) = -c * slopes_of(z_.cwiseProduct(forces.by_start_q));
     dsv.row(i) = -c * slopes_of(z_.cwiseProduct(forces.by_start_qdot));
-    for_each_drive(simulator_.model(), [&](int at, int control) {
+    for_each_drive(horizon_.model(), [&](int at, int control) {
       by_u_[control] -= c * z_[at] * forces.by_u[control];
     });
   } else {
@@ -108,7 +109,7 @@ void StageHessian::evaluate_design(Eigen::Index i, bool with_stage) {
 void StageHessian::evaluate(const Trajectory& trajectory, int stage, const Eigen::VectorXd& z,
                             const OutputRows<double>* y) {
   set_zero();
-  simulator_.set_point(trajectory, stage, at_);
+  history_.set_point(trajectory, stage, at_);
   point_.q = without_slope(at_.q);
   point_.qdot = without_slope(at_.qdot);
   point_.a = without_slope(at_.a);

@@ -3,7 +3,8 @@
 #include <vector>
 
 #include "hbar/adjoint/outputs/instant_outputs.h"
-#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/history.h"
+#include "hbar/adjoint/trajectory/horizon.h"
 
 namespace hbar {
 
@@ -13,12 +14,11 @@ namespace hbar {
 /// derivative but the mixed ones that are listed.
 ///
 /// Parameters move with design variables d along a constant ∂p/∂d. Holds its workspace for one
-/// simulator and belongs to one thread at a time.
+/// horizon and belongs to one thread at a time.
 class StageHessian {
  public:
-  /// @param simulator  must outlive this object
   /// @param designs    number of design variables
-  StageHessian(Simulator& simulator, Eigen::Index designs);
+  StageHessian(const Horizon& horizon, Eigen::Index designs);
 
   /// Takes parameters and how they move.
   ///
@@ -48,9 +48,10 @@ class StageHessian {
   void linearize_stage(const Mechanism<Dual>& mechanism);
   void linearize_outputs(const Mechanism<Dual>& mechanism, const VectorX<Dual>& p);
 
-  Simulator& simulator_;
+  Horizon horizon_;
   StageResidual<Dual> stage_;
   InstantOutputs<Dual> outputs_;
+  History history_;
   StagePoint<double> at_;
   StagePoint<Dual> point_;
   Mechanism<Dual> still_;                // parameters that do not move

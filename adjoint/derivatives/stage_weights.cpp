@@ -2,6 +2,7 @@
 
 #include "hbar/adjoint/outputs/instant_outputs.h"
 #include "hbar/adjoint/trajectory/flat_stencil.h"
+#include "hbar/adjoint/trajectory/horizon.h"
 
 namespace hbar {
 
@@ -24,14 +25,13 @@ void add_rate_weights(const Model& model, const Trajectory& trajectory, int s,
   }
 }
 
-StageWeights stage_weights(Simulator& simulator, const Trajectory& trajectory,
+StageWeights stage_weights(const Horizon& horizon, const Trajectory& trajectory,
                            const TrajectoryPartials& partials) {
-  const Model& model = simulator.model();
+  const Model& model = horizon.model();
   StageWeights out{Eigen::MatrixXd::Zero(model.dof(), trajectory.timeline.stage_count()),
                    Eigen::VectorXd::Zero(model.dof()), partials.p, partials.u};
-  Mechanism<double> mechanism = nominal_mechanism<double>(model);
-  apply_parameters<double>(model, simulator.parameters(), trajectory.inputs.p, mechanism);
-  InstantOutputs<double> outputs(model, simulator.options().measurements);
+  const Mechanism<double>& mechanism = *trajectory.mechanism;
+  InstantOutputs<double> outputs(model, horizon.options().measurements);
   Eigen::VectorXd by_rate(model.dof());
   for (int k = 0; k <= trajectory.step_count(); ++k) {
     const int s = trajectory.timeline.step_end(k);
@@ -41,7 +41,7 @@ StageWeights stage_weights(Simulator& simulator, const Trajectory& trajectory,
       const auto q = trajectory.q.col(s);
       const auto qdot = trajectory.qdot.col(s);
       const int step = measured_step(k);
-      outputs.pull_back(mechanism, simulator.parameters(), trajectory.inputs.p,
+      outputs.pull_back(mechanism, horizon.parameters(), trajectory.inputs.p,
                         outputs.motion_at(mechanism, q, qdot), q, qdot,
                         trajectory.inputs.u.col(step),
                         {partials.v.col(k), partials.tactile.col(k), partials.measured.col(k)},

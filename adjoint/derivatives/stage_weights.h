@@ -4,6 +4,10 @@
 
 namespace hbar {
 
+class Horizon;
+class Model;
+struct Trajectory;
+
 /// ∂Ψ/∂q̄ with rates, variables, sensor readings and measurements replaced by what they depend on: ȳ
 /// of (20), and the direct shares of q̇₀, p and u.
 struct StageWeights {
@@ -13,8 +17,8 @@ struct StageWeights {
   Eigen::MatrixXd u;      ///<                                [controls x steps]
 };
 
-/// @param trajectory  whole, of this simulator
-[[nodiscard]] StageWeights stage_weights(Simulator& simulator, const Trajectory& trajectory,
+/// @param trajectory  whole, of this horizon
+[[nodiscard]] StageWeights stage_weights(const Horizon& horizon, const Trajectory& trajectory,
                                          const TrajectoryPartials& partials);
 
 /// Adds (∂q̇_s/∂q̄)ᵀ y to the stages that q̇_s looks back on; for stage 0 to `out.qdot0`.

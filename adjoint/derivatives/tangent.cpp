@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hbar/adjoint/outputs/instant_outputs.h"
+#include "hbar/adjoint/trajectory/flat_stencil.h"
 #include "hbar/core/base/dual_vectors.h"
 
 namespace hbar {
@@ -12,22 +13,21 @@ namespace {
 /// than rows, direction by direction by dual numbers where there are more rows.
 class OutputTangent {
  public:
-  OutputTangent(Simulator& simulator, const Inputs& inputs, const Directions& directions)
-      : set_(simulator.parameters()),
-        inputs_(inputs),
+  OutputTangent(const Horizon& horizon, const Trajectory& trajectory, const Directions& directions)
+      : set_(horizon.parameters()),
+        inputs_(trajectory.inputs),
         directions_(directions),
-        outputs_(simulator.model(), simulator.options().measurements),
-        dual_outputs_(simulator.model(), simulator.options().measurements),
-        mechanism_(nominal_mechanism<double>(simulator.model())),
+        outputs_(horizon.model(), horizon.options().measurements),
+        dual_outputs_(horizon.model(), horizon.options().measurements),
+        mechanism_(*trajectory.mechanism),
         weights_(outputs_.zero_rows()),
         rows_(dual_outputs_.zero_rows()) {
-    apply_parameters<double>(simulator.model(), set_, inputs.p, mechanism_);
     const Eigen::Index count =
         weights_.v.size() + weights_.tactile.size() + weights_.measured.size();
     reverse_ = count < directions.count();
     for (Eigen::Index i = 0; i < (reverse_ || count == 0 ? 0 : directions.count()); ++i) {
-      mechanisms_.push_back(nominal_mechanism<Dual>(simulator.model()));
-      apply_parameters<Dual>(simulator.model(), set_, dual_vector(inputs.p, directions.p.col(i)),
+      mechanisms_.push_back(nominal_mechanism<Dual>(horizon.model()));
+      apply_parameters<Dual>(horizon.model(), set_, dual_vector(inputs_.p, directions.p.col(i)),
                              mechanisms_.back());
     }
   }
@@ -99,7 +99,7 @@ class OutputTangent {
   bool reverse_ = true;
   InstantOutputs<double> outputs_;
   InstantOutputs<Dual> dual_outputs_;
-  Mechanism<double> mechanism_;
+  const Mechanism<double>& mechanism_;
   std::vector<Mechanism<Dual>> mechanisms_;  // per direction, if not in reverse
   OutputRows<double> weights_;               // all zero but for the row in hand
   OutputRows<Dual> rows_;
@@ -129,19 +129,19 @@ Eigen::MatrixXd rate_tangent(const Model& model, const Trajectory& trajectory, i
 
 }  // namespace
 
-Directions Directions::zero(const Simulator& simulator, Eigen::Index count) {
-  const Model& model = simulator.model();
-  return {Eigen::MatrixXd::Zero(simulator.parameters().size(), count),
-          Eigen::MatrixXd::Zero(model.control_count() * simulator.options().steps, count),
+Directions Directions::zero(const Horizon& horizon, Eigen::Index count) {
+  const Model& model = horizon.model();
+  return {Eigen::MatrixXd::Zero(horizon.parameters().size(), count),
+          Eigen::MatrixXd::Zero(model.control_count() * horizon.options().steps, count),
           Eigen::MatrixXd::Zero(model.dof(), count), Eigen::MatrixXd::Zero(model.dof(), count)};
 }
 
-TangentSweep::TangentSweep(Simulator& simulator, solvers::SolverFactory factory)
-    : simulator_(simulator), system_(simulator, std::move(factory)) {}
+TangentSweep::TangentSweep(const Horizon& horizon, solvers::SolverFactory factory)
+    : horizon_(horizon), system_(horizon, std::move(factory)) {}
 
 Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directions& directions) {
   const Linearization& system = system_.update(trajectory);
-  const Model& model = simulator_.model();
+  const Model& model = horizon_.model();
   const int n = model.dof();
   const int stages = trajectory.timeline.stage_count();
   const int steps = trajectory.step_count();
@@ -159,8 +159,8 @@ Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directio
   out.qdot.resize((steps + 1) * n, directions.count());
   out.v.resize((steps + 1) * model.variable_count(), directions.count());
   out.tactile.resize((steps + 1) * model.tactile_count(), directions.count());
-  out.measured.resize((steps + 1) * simulator_.measured_count(), directions.count());
-  OutputTangent outputs(simulator_, trajectory.inputs, directions);
+  out.measured.resize((steps + 1) * horizon_.measured_count(), directions.count());
+  OutputTangent outputs(horizon_, trajectory, directions);
   for (int k = 0; k <= steps; ++k) {
     const int s = trajectory.timeline.step_end(k);
     out.q.middleRows(k * n, n) = dq.middleRows(s * n, n);

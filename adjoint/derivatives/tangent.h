@@ -13,7 +13,7 @@ struct Directions {
   Eigen::MatrixXd qdot0;  ///<                                        [dof x count]
 
   /// `count` directions, all zero.
-  [[nodiscard]] static Directions zero(const Simulator& simulator, Eigen::Index count);
+  [[nodiscard]] static Directions zero(const Horizon& horizon, Eigen::Index count);
   [[nodiscard]] Eigen::Index count() const { return p.cols(); }
 };
 
@@ -28,13 +28,13 @@ struct Tangents {
 
 /// Forward sensitivities H̄ δq̄ = −(∂ḡ/∂p) δp − … by the matrices of Linearizer and any solver.
 ///
-/// Holds its workspace for one simulator and belongs to one thread at a time.
+/// Holds its workspace for one horizon and belongs to one thread at a time.
 class TangentSweep {
  public:
   /// @param factory  of the solver for H̄; null means block substitution
-  explicit TangentSweep(Simulator& simulator, solvers::SolverFactory factory = nullptr);
+  explicit TangentSweep(const Horizon& horizon, solvers::SolverFactory factory = nullptr);
 
-  /// @param trajectory  whole, of this simulator
+  /// @param trajectory  whole, of this horizon
   /// @throws NumericalFailure if H̄ is singular or a residual is too large
   [[nodiscard]] Tangents push_forward(const Trajectory& trajectory, const Directions& directions);
 
@@ -45,7 +45,7 @@ class TangentSweep {
   [[nodiscard]] const solvers::LinearSolver& solver() const { return system_.solver(); }
 
  private:
-  Simulator& simulator_;
+  Horizon horizon_;
   FactorizedLinearization system_;
   Eigen::MatrixXd rhs_;
 };

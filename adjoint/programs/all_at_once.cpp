@@ -7,6 +7,7 @@
 #include "hbar/adjoint/derivatives/stage_weights.h"
 #include "hbar/adjoint/programs/state_variables.h"
 #include "hbar/adjoint/trajectory/integrator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {
@@ -18,18 +19,18 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 AllAtOnce::AllAtOnce(const TrajectoryProblem& problem, const TranscriptionOptions& options)
     : Transcription(problem),
-      residual_(problem_.simulator),
-      linearizer_(problem_.simulator),
-      hessian_(problem_.simulator, head_.design_count()),
-      outputs_(problem_.simulator.model(), problem_.simulator.options().measurements),
-      mechanism_(nominal_mechanism<double>(problem_.simulator.model())) {
-  const SimulationOptions& simulation = problem_.simulator.options();
+      residual_(problem_.horizon),
+      linearizer_(problem_.horizon),
+      hessian_(problem_.horizon, head_.design_count()),
+      reader_(problem_.horizon),
+      outputs_(problem_.horizon.model(), problem_.horizon.options().measurements) {
+  const SimulationOptions& simulation = problem_.horizon.options();
   trajectory_.timeline = even_timeline(find_integrator(simulation.integrator), simulation.h,
                                        simulation.steps, simulation.restarts);
   guess(options.q_guess);
   lay_out_stages();
   lay_out_outputs();
-  row_scale_.setOnes(problem_.simulator.model().dof() * trajectory_.timeline.last_stage());
+  row_scale_.setOnes(problem_.horizon.model().dof() * trajectory_.timeline.last_stage());
   differentiate(variables_.start);
   const Linearization& system = linearizer_.linearize(trajectory_);
   scale_rows(system);
@@ -40,7 +41,7 @@ Eigen::Index AllAtOnce::stage_place(int stage) const {
   if (stage == 0) {
     return head_.state_is_free() ? head_.state_place() : -1;
   }
-  return head_.size() + (stage - 1) * problem_.simulator.model().dof();
+  return head_.size() + (stage - 1) * problem_.horizon.model().dof();
 }
 
 int AllAtOnce::step_ended_by(int stage) const {
@@ -51,7 +52,7 @@ int AllAtOnce::step_ended_by(int stage) const {
 
 /// Variables for the stages' coordinates, and equations for their residuals.
 void AllAtOnce::guess(const Eigen::MatrixXd& q_guess) {
-  const Model& model = problem_.simulator.model();
+  const Model& model = problem_.horizon.model();
   const Eigen::Index n = model.dof();
   const Timeline& timeline = trajectory_.timeline;
   const Eigen::MatrixXd states = guess_states(problem_, head_, q_guess);
@@ -65,7 +66,7 @@ void AllAtOnce::guess(const Eigen::MatrixXd& q_guess) {
   for (int s = 1; s <= timeline.last_stage(); ++s) {
     const int step = timeline.stage(s).step;
     const double begin = timeline.stage(timeline.step_end(step)).time;
-    const double share = (timeline.stage(s).time - begin) / problem_.simulator.options().h;
+    const double share = (timeline.stage(s).time - begin) / problem_.horizon.options().h;
     more.start.segment((s - 1) * n, n) =
         (1.0 - share) * states.col(step).head(n) + share * states.col(step + 1).head(n);
     const bool ends = timeline.step_end(step + 1) == s;
@@ -84,7 +85,7 @@ void AllAtOnce::guess(const Eigen::MatrixXd& q_guess) {
 
 void AllAtOnce::lay_out_stages() {
   const Timeline& timeline = trajectory_.timeline;
-  const int n = problem_.simulator.model().dof();
+  const int n = problem_.horizon.model().dof();
   stages_.resize(static_cast<std::size_t>(timeline.stage_count()));
   if (head_.state_is_free()) {
     stages_[0] = {{stage_place(0), 1.0, 0.0, 0.0, 0.0, 0.0},
@@ -155,7 +156,7 @@ void AllAtOnce::lay_out_jacobian(const Linearization& system) {
   }
   if (head_.state_is_free()) {
     add_matrix(system.dg_dq0.matrix(), head_.state_place());
-    add_matrix(system.dg_dqdot0.matrix(), head_.state_place() + problem_.simulator.model().dof());
+    add_matrix(system.dg_dqdot0.matrix(), head_.state_place() + problem_.horizon.model().dof());
   }
   jacobian_.finish();
   pattern_ = jacobian_.pattern();
@@ -175,8 +176,9 @@ void AllAtOnce::move_to(const Eigen::VectorXd& x) {
     trajectory_.q.rightCols(trajectory_.timeline.last_stage()).reshaped() =
         x.tail(x.size() - head_.size());
     try {
+      trajectory_.mechanism = problem_.horizon.mechanism(trajectory_.inputs.p);
       g_bar_ = residual_.evaluate(trajectory_).cwiseProduct(row_scale_);
-      values_ = problem_.simulator.values(trajectory_);
+      values_ = reader_.values(trajectory_);
       if (!g_bar_.allFinite()) {
         failure_ = "all-at-once: the residual is not finite at this point";
       }
@@ -209,7 +211,7 @@ void AllAtOnce::objective_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& g)
   const Stopwatch stopwatch(times_.gradient);
   ++times_.gradients;
   const TrajectoryPartials partials = problem_.objective.partials(values_);
-  const StageWeights weights = stage_weights(problem_.simulator, trajectory_, partials);
+  const StageWeights weights = stage_weights(problem_.horizon, trajectory_, partials);
   const Gradient direct{0.0, weights.p, weights.u, weights.q_bar.col(0), weights.qdot0};
   g.setZero(x.size());
   head_.add_pull_back(direct, problem_.map->jacobian(design(x)), g);
@@ -229,8 +231,6 @@ void AllAtOnce::differentiate(const Eigen::VectorXd& x) {
   move_to(x);
   if (!differentiated_) {
     map_jacobian_ = problem_.map->jacobian(design(x));
-    apply_parameters<double>(problem_.simulator.model(), problem_.simulator.parameters(),
-                             trajectory_.inputs.p, mechanism_);
     differentiated_ = true;
   }
 }

@@ -9,6 +9,7 @@
 #include "hbar/adjoint/programs/transcription.h"
 #include "hbar/adjoint/trajectory/flat_stencil.h"
 #include "hbar/adjoint/trajectory/trajectory_residual.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 
 namespace hbar {
 
@@ -96,8 +97,8 @@ class AllAtOnce final : public Transcription {
   TrajectoryResidual residual_;
   Linearizer linearizer_;
   StageHessian hessian_;
+  ValueReader reader_;
   InstantOutputs<double> outputs_;
-  Mechanism<double> mechanism_;
   Eigen::VectorXd row_scale_;  // of ḡ's rows
   EntryPlan jacobian_;
 

@@ -109,13 +109,13 @@ bool holds(const Coordinates& coordinates, int c) {
 }  // namespace
 
 void AllAtOnce::lay_out_outputs() {
-  const Model& model = problem_.simulator.model();
+  const Model& model = problem_.horizon.model();
   for (const EndEffector& end_effector : model.end_effectors()) {
     variable_reads_.push_back({path_of_link(model, end_effector.link), {}, {}});
   }
   const Coordinates all = all_coordinates(model);
   tactile_reads_ = {all, all, {}};
-  for (const Measurement& measurement : problem_.simulator.options().measurements) {
+  for (const Measurement& measurement : problem_.horizon.options().measurements) {
     const auto rows = std::visit(RowReads<OutputReads>{model}, measurement);
     measured_reads_.insert(measured_reads_.end(), rows.begin(), rows.end());
   }
@@ -126,7 +126,7 @@ void AllAtOnce::lay_out_outputs() {
 /// outputs read bodies of two branches), of a control and a rate (a motor's power), of a design
 /// variable and a control (a motor's P).
 void AllAtOnce::lay_out_pairs() {
-  const Model& model = problem_.simulator.model();
+  const Model& model = problem_.horizon.model();
   pairs_ = residual_pattern(model);
   if (model.tactile_count() > 0) {
     pairs_.assign(pairs_.size(), all_coordinates(model));
@@ -136,7 +136,7 @@ void AllAtOnce::lay_out_pairs() {
     own.emplace_back(others.begin(), others.end());
   }
   std::set<std::pair<int, int>> powers;
-  for (const Measurement& measurement : problem_.simulator.options().measurements) {
+  for (const Measurement& measurement : problem_.horizon.options().measurements) {
     const auto rows = std::visit(RowReads<OutputReads>{model}, measurement);
     if (std::holds_alternative<BodyDistance>(measurement)) {
       for (const int c : rows[0].q) {
@@ -155,7 +155,7 @@ void AllAtOnce::lay_out_pairs() {
   }
   std::set<std::pair<Eigen::Index, int>> gains;
   for (int m = 0; m < static_cast<int>(model.motors().size()); ++m) {
-    const int gain = problem_.simulator.parameters().index(ParameterKind::kMotorP, m, 0);
+    const int gain = problem_.horizon.parameters().index(ParameterKind::kMotorP, m, 0);
     if (gain >= 0) {
       const CoordinateRange range = driven_by(model, m);
       for (const Eigen::Index i : head_.designs_of(gain)) {
@@ -215,7 +215,7 @@ std::vector<Eigen::Index> AllAtOnce::columns_of(const ValuePlace& place) const {
     out.push_back(head_.control_place(block) + control);
   }
   for (const StageEntry& entry : entries) {
-    for (int c = 0; c < problem_.simulator.model().dof(); ++c) {
+    for (int c = 0; c < problem_.horizon.model().dof(); ++c) {
       if (depends(reads, entry, c)) {
         out.push_back(entry.place + c);
       }
@@ -245,8 +245,8 @@ void AllAtOnce::differentiate_output(const ValuePlace& place) {
   by_p_.setZero(trajectory_.inputs.p.size());
   const auto q = trajectory_.q.col(stage);
   const auto qdot = trajectory_.qdot.col(stage);
-  outputs_.pull_back(mechanism_, problem_.simulator.parameters(), trajectory_.inputs.p,
-                     outputs_.motion_at(mechanism_, q, qdot), q, qdot,
+  outputs_.pull_back(*trajectory_.mechanism, problem_.horizon.parameters(), trajectory_.inputs.p,
+                     outputs_.motion_at(*trajectory_.mechanism, q, qdot), q, qdot,
                      trajectory_.inputs.u.col(measured_step(place.step)), y, by_q_, by_qdot_, by_u_,
                      by_p_);
 }
@@ -282,7 +282,7 @@ void AllAtOnce::derivatives_of(const ValuePlace& place, std::vector<double>& out
     out.push_back(by_u_[control]);
   }
   for (const StageEntry& entry : entries) {
-    for (int c = 0; c < problem_.simulator.model().dof(); ++c) {
+    for (int c = 0; c < problem_.horizon.model().dof(); ++c) {
       if (depends(reads, entry, c)) {
         out.push_back(entry.q * by_q_[c] + entry.qdot * by_qdot_[c]);
       }

@@ -35,9 +35,9 @@ void for_each_pair(const Entries& entries, const F& f) {
 
 void AllAtOnce::add_stage(int stage, EntryPlan& entries) const {
   const std::vector<StageEntry>& runs = stages_[static_cast<std::size_t>(stage)];
-  const int n = problem_.simulator.model().dof();
+  const int n = problem_.horizon.model().dof();
   const int step = step_ended_by(stage);
-  const bool reads_controls = step >= 0 && problem_.simulator.measured_count() > 0;
+  const bool reads_controls = step >= 0 && problem_.horizon.measured_count() > 0;
   const Eigen::Index control =
       head_.control_place(head_.block_of_step(measured_step(step > 0 ? step : 0)));
   for_each_pair(runs, [&](const StageEntry& a, const StageEntry& b) {
@@ -72,9 +72,9 @@ void AllAtOnce::add_stage(int stage, EntryPlan& entries) const {
 void AllAtOnce::put_stage(int stage, EntryPlan& entries) const {
   const std::vector<StageEntry>& runs = stages_[static_cast<std::size_t>(stage)];
   const StageHessian& h = hessian_;
-  const int n = problem_.simulator.model().dof();
+  const int n = problem_.horizon.model().dof();
   const int step = step_ended_by(stage);
-  const bool reads_controls = step >= 0 && problem_.simulator.measured_count() > 0;
+  const bool reads_controls = step >= 0 && problem_.horizon.measured_count() > 0;
   for_each_pair(runs, [&](const StageEntry& a, const StageEntry& b) {
     const double by_qq = a.q * b.q;
     const double by_qv = a.q * b.qdot;
@@ -126,7 +126,7 @@ void AllAtOnce::lagrangian_hessian(const Eigen::VectorXd& x, double sigma,
   if (kind != solvers::HessianKind::kExact) {
     return;
   }
-  const Eigen::Index n = problem_.simulator.model().dof();
+  const Eigen::Index n = problem_.horizon.model().dof();
   const TrajectoryPartials partials = lagrangian_partials(values_, sigma, lambda);
   hessian_.set_parameters(trajectory_.inputs.p, map_jacobian_);
   Eigen::MatrixXd dd = Eigen::MatrixXd::Zero(head_.design_count(), head_.design_count());

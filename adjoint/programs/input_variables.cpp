@@ -28,10 +28,10 @@ void append(solvers::NlpVariables& all, const Eigen::VectorXd& start, const Eige
 
 void require_map(const TrajectoryProblem& problem) {
   const Eigen::Index count = problem.map == nullptr ? 0 : problem.map->parameter_count();
-  if (problem.map == nullptr || count != problem.simulator.parameters().size()) {
+  if (problem.map == nullptr || count != problem.horizon.parameters().size()) {
     throw InvalidInput(concat("TrajectoryProblem: the map has ", count,
-                              " parameters; the simulator has ",
-                              problem.simulator.parameters().size()));
+                              " parameters; the horizon has ",
+                              problem.horizon.parameters().size()));
   }
 }
 
@@ -60,8 +60,8 @@ InputVariables::InputVariables(const TrajectoryProblem& problem) : problem_(prob
         concat("TrajectoryProblem: design_weight is ", problem.design_weight, "; it must be ≥ 0"));
   }
   const int hold = problem.controls.hold;
-  blocks_ = (problem.simulator.options().steps + hold - 1) / hold;
-  control_count_ = problem.simulator.model().control_count();
+  blocks_ = (problem.horizon.options().steps + hold - 1) / hold;
+  control_count_ = problem.horizon.model().control_count();
   design_count_ = problem.map->variables().size();
   describe_design_and_controls();
   describe_state();
@@ -103,14 +103,14 @@ void InputVariables::describe_design_and_controls() {
                                 : repeated(held.scale, 1.0, "controls.scale"));
   for (int b = 0; b < blocks_; ++b) {
     for (int i = 0; i < control_count_; ++i) {
-      variables_.names.push_back(concat("control.", problem_.simulator.model().control_name(i),
+      variables_.names.push_back(concat("control.", problem_.horizon.model().control_name(i),
                                         " from step ", b * held.hold));
     }
   }
 }
 
 void InputVariables::describe_state() {
-  const Model& model = problem_.simulator.model();
+  const Model& model = problem_.horizon.model();
   const Eigen::VectorXd q0 = filled(problem_.q0, model.dof(), 0.0, "q0");
   const Eigen::VectorXd qdot0 = filled(problem_.qdot0, model.dof(), 0.0, "qdot0");
   const Eigen::VectorXd q_scale = filled(problem_.q_scale, model.dof(), 1.0, "q_scale");
@@ -136,8 +136,8 @@ Inputs InputVariables::inputs(const Eigen::VectorXd& x) const {
     throw InvalidInput(
         concat("TrajectoryProblem: x has ", x.size(), " entries; it must have ", size()));
   }
-  const int dof = problem_.simulator.model().dof();
-  const int steps = problem_.simulator.options().steps;
+  const int dof = problem_.horizon.model().dof();
+  const int steps = problem_.horizon.options().steps;
   Inputs out{problem_.map->parameters(design(x)), Eigen::MatrixXd(control_count_, steps),
              filled(problem_.q0, dof, 0.0, "q0"), filled(problem_.qdot0, dof, 0.0, "qdot0")};
   for (int k = 0; k < steps; ++k) {
@@ -181,7 +181,7 @@ double InputVariables::design_cost_curvature(Eigen::Index i) const {
 }
 
 void InputVariables::require_places(const ConstraintTerm& term) const {
-  const TrajectoryValues shape = value_shape(problem_.simulator);
+  const TrajectoryValues shape = value_shape(problem_.horizon);
   for (const PartialPlace& place : term.places()) {
     const bool timeless = place.field == ValueField::kP;
     if (place.index >= field_rows(shape, place.field) ||

@@ -77,10 +77,10 @@ LoadedProblem make_problem(Model model, const SimulationOptions& simulation,
   }
   const ObjectiveChoice objective = choose_objective(model, options);
   ParameterSet parameters = choose_parameters(model, options);
-  Simulator simulator(std::move(model), std::move(parameters), simulation);
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon(std::move(model), std::move(parameters), simulation);
+  Inputs inputs = horizon.nominal_inputs();
   return {
-      {std::move(simulator), make_objective(objective), std::move(inputs)}, objective, {}, {}, {}};
+      {std::move(horizon), make_objective(objective), std::move(inputs)}, objective, {}, {}, {}};
 }
 
 /// Names of the files that a body is made from.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hbar/adjoint/programs/state_variables.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {
@@ -71,9 +72,9 @@ Shooting::Shooting(const TrajectoryProblem& problem, const TranscriptionOptions&
 }
 
 void Shooting::lay_out_segments(const TranscriptionOptions& options) {
-  const Simulator& simulator = problem_.simulator;
-  const int steps = simulator.options().steps;
-  const Eigen::Index dof = simulator.model().dof();
+  const Horizon& horizon = problem_.horizon;
+  const int steps = horizon.options().steps;
+  const Eigen::Index dof = horizon.model().dof();
   std::vector<int> starts = {0};
   if (options.formulation == Formulation::kMultipleShooting) {
     const std::vector<int> more = segment_starts(steps, options.segments);
@@ -84,7 +85,7 @@ void Shooting::lay_out_segments(const TranscriptionOptions& options) {
   std::vector<std::string> equations;
   const Eigen::MatrixXd states =
       count > 1 ? guess_states(problem_, head_, options.q_guess) : Eigen::MatrixXd();
-  const std::vector<std::string> names = state_names(simulator.model());
+  const std::vector<std::string> names = state_names(horizon.model());
   for (std::size_t i = 0; i < count; ++i) {
     const int first = starts[i];
     const int last = starts[i + 1];
@@ -111,7 +112,7 @@ void Shooting::lay_out_segments(const TranscriptionOptions& options) {
       columns.first_state = head_.state_place();
       columns.state = 2 * dof;
     }
-    segments_.push_back(std::make_unique<ShootingSegment>(simulator, first, last - first,
+    segments_.push_back(std::make_unique<ShootingSegment>(horizon, first, last - first,
                                                           problem_.controls.hold, columns));
   }
   add_equations(equations);
@@ -248,8 +249,8 @@ void Shooting::gather_values(const Inputs& whole) {
       return;
     }
   }
-  const int steps = problem_.simulator.options().steps;
-  values_.h = problem_.simulator.options().h;
+  const int steps = problem_.horizon.options().steps;
+  values_.h = problem_.horizon.options().h;
   values_.u = whole.u;
   values_.p = whole.p;
   for (Eigen::MatrixXd TrajectoryValues::*field :

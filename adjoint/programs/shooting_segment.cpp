@@ -2,13 +2,14 @@
 
 #include <utility>
 
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {
 namespace {
 
 /// Options of a stretch of a horizon: restarts within it are counted from its own start.
-SimulationOptions options_of_stretch(const Simulator& whole, int first_step, int steps) {
+SimulationOptions options_of_stretch(const Horizon& whole, int first_step, int steps) {
   SimulationOptions out = whole.options();
   out.steps = steps;
   out.restarts.clear();
@@ -22,22 +23,22 @@ SimulationOptions options_of_stretch(const Simulator& whole, int first_step, int
 
 }  // namespace
 
-ShootingSegment::ShootingSegment(const Simulator& whole, int first_step, int steps, int hold,
+ShootingSegment::ShootingSegment(const Horizon& whole, int first_step, int steps, int hold,
                                  SegmentColumns columns)
     : first_step_(first_step),
       hold_(hold),
       columns_(columns),
-      simulator_(whole.shared_model(), whole.parameters(),
-                 options_of_stretch(whole, first_step, steps)),
-      adjoint_(simulator_),
-      tangent_(simulator_),
-      second_(simulator_) {}
+      simulator_(whole.with(options_of_stretch(whole, first_step, steps))),
+      reader_(horizon()),
+      adjoint_(horizon()),
+      tangent_(horizon()),
+      second_(horizon()) {}
 
 void ShootingSegment::simulate(const Inputs& inputs) {
   failure_.clear();
   try {
     trajectory_ = simulator_.rollout(inputs).trajectory();
-    values_ = simulator_.values(trajectory_);
+    values_ = reader_.values(trajectory_);
   } catch (const NumericalFailure& error) {
     failure_ = error.what();
   } catch (const InvalidInput& error) {  // parameters that no body can have
@@ -47,20 +48,20 @@ void ShootingSegment::simulate(const Inputs& inputs) {
 
 Eigen::Index ShootingSegment::control_variable(int k, Eigen::Index i) const {
   const int block = (first_step_ + k) / hold_ - first_step_ / hold_;
-  return columns_.design + block * simulator_.model().control_count() + i;
+  return columns_.design + block * horizon().model().control_count() + i;
 }
 
 const Tangents& ShootingSegment::differentiate(const Eigen::MatrixXd& map_jacobian) {
-  Directions along = Directions::zero(simulator_, columns_.size());
+  Directions along = Directions::zero(horizon(), columns_.size());
   along.p.leftCols(columns_.design) = map_jacobian;
-  const Eigen::Index controls = simulator_.model().control_count();
+  const Eigen::Index controls = horizon().model().control_count();
   for (int k = 0; k < step_count(); ++k) {
     for (Eigen::Index i = 0; i < controls; ++i) {
       along.u(k * controls + i, control_variable(k, i)) = 1.0;
     }
   }
   if (columns_.state > 0) {
-    const Eigen::Index dof = simulator_.model().dof();
+    const Eigen::Index dof = horizon().model().dof();
     along.q0.rightCols(2 * dof).leftCols(dof).setIdentity();
     along.qdot0.rightCols(dof).setIdentity();
   }
@@ -94,7 +95,7 @@ Inputs ShootingSegment::direction(Eigen::Index variable,
 Eigen::MatrixXd ShootingSegment::curvature(const TrajectoryPartials& weights,
                                            const Eigen::MatrixXd& map_jacobian,
                                            Eigen::VectorXd& by_p) {
-  const Eigen::Index dof = simulator_.model().dof();
+  const Eigen::Index dof = horizon().model().dof();
   by_p = second_.set_point(trajectory_, weights).p;
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(columns_.size(), columns_.size());
   for (Eigen::Index j = 0; j < columns_.size(); ++j) {

@@ -6,6 +6,8 @@
 #include "hbar/adjoint/derivatives/second_order.h"
 #include "hbar/adjoint/derivatives/tangent.h"
 #include "hbar/adjoint/programs/trajectory_problem.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 
 namespace hbar {
 
@@ -46,7 +48,7 @@ class ShootingSegment {
   /// @param first_step  of the horizon
   /// @param steps       of the segment
   /// @param hold        steps per block of controls, counted from the horizon's start
-  ShootingSegment(const Simulator& whole, int first_step, int steps, int hold,
+  ShootingSegment(const Horizon& whole, int first_step, int steps, int hold,
                   SegmentColumns columns);
 
   /// Simulates. Where that fails, failure() says why.
@@ -78,11 +80,12 @@ class ShootingSegment {
 
   [[nodiscard]] const SegmentColumns& columns() const { return columns_; }
   [[nodiscard]] int first_step() const { return first_step_; }
-  [[nodiscard]] int step_count() const { return simulator_.options().steps; }
+  [[nodiscard]] int step_count() const { return horizon().steps(); }
   /// Whether exponential coordinates changed chart on the way.
   [[nodiscard]] bool changes_chart() const { return !trajectory_.chart_switches.empty(); }
 
  private:
+  [[nodiscard]] const Horizon& horizon() const { return simulator_.horizon(); }
   /// The segment's control variable that acts as control `i` during its step `k`.
   [[nodiscard]] Eigen::Index control_variable(int k, Eigen::Index i) const;
   [[nodiscard]] Inputs direction(Eigen::Index variable, const Eigen::MatrixXd& map_jacobian) const;
@@ -91,6 +94,7 @@ class ShootingSegment {
   int hold_ = 1;
   SegmentColumns columns_;
   Simulator simulator_;
+  ValueReader reader_;
   AdjointSweep adjoint_;
   TangentSweep tangent_;
   SecondOrderSweep second_;

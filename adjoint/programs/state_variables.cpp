@@ -1,14 +1,15 @@
 #include "hbar/adjoint/programs/state_variables.h"
 
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {
 
-Eigen::MatrixXd guess_states(TrajectoryProblem& problem, const InputVariables& head,
+Eigen::MatrixXd guess_states(const TrajectoryProblem& problem, const InputVariables& head,
                              const Eigen::MatrixXd& q_guess) {
-  Simulator& simulator = problem.simulator;
-  const Eigen::Index dof = simulator.model().dof();
-  const int steps = simulator.options().steps;
+  const Horizon& horizon = problem.horizon;
+  const Eigen::Index dof = horizon.model().dof();
+  const int steps = horizon.options().steps;
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(2 * dof, steps + 1);
   if (q_guess.size() > 0) {
     if (q_guess.rows() != dof || q_guess.cols() != steps + 1 || !q_guess.allFinite()) {
@@ -17,15 +18,15 @@ Eigen::MatrixXd guess_states(TrajectoryProblem& problem, const InputVariables& h
     }
     out.topRows(dof) = q_guess;
     out.bottomRows(dof).rightCols(steps) =
-        (q_guess.rightCols(steps) - q_guess.leftCols(steps)) / simulator.options().h;
+        (q_guess.rightCols(steps) - q_guess.leftCols(steps)) / horizon.options().h;
     out.bottomRows(dof).col(0) = out.bottomRows(dof).col(1);
     return out;
   }
-  const Rollout rollout = simulator.rollout(head.inputs(head.variables().start));
+  const Rollout rollout = simulate(horizon, head.inputs(head.variables().start));
   const Trajectory& reached = rollout.partial();
   if (!reached.chart_switches.empty()) {
     const ChartSwitch& first = reached.chart_switches.front();
-    const Model& model = simulator.model();
+    const Model& model = horizon.model();
     throw InvalidInput(
         concat("transcription: in the first guess exponential coordinates of '",
                model.coordinate_name(model.tree().node(first.node).coordinates.begin),
@@ -52,7 +53,7 @@ std::vector<std::string> state_names(const Model& model) {
 }
 
 Eigen::VectorXd state_scale(const TrajectoryProblem& problem) {
-  const Eigen::Index dof = problem.simulator.model().dof();
+  const Eigen::Index dof = problem.horizon.model().dof();
   Eigen::VectorXd out(2 * dof);
   out << filled(problem.q_scale, dof, 1.0, "q_scale"),
       filled(problem.qdot_scale, dof, 1.0, "qdot_scale");

@@ -15,7 +15,8 @@ namespace hbar {
 /// @returns                                                                   [2 dof x N+1]
 /// @throws InvalidInput if q_guess has another shape or is not finite, or exponential coordinates
 ///         change chart in what is simulated
-[[nodiscard]] Eigen::MatrixXd guess_states(TrajectoryProblem& problem, const InputVariables& head,
+[[nodiscard]] Eigen::MatrixXd guess_states(const TrajectoryProblem& problem,
+                                           const InputVariables& head,
                                            const Eigen::MatrixXd& q_guess);
 
 /// "elbow", …, "elbow rate", …                                                [2 dof]

@@ -7,6 +7,7 @@
 #include "hbar/adjoint/programs/design_map.h"
 #include "hbar/adjoint/terms/constraint.h"
 #include "hbar/adjoint/terms/objective.h"
+#include "hbar/adjoint/trajectory/horizon.h"
 
 namespace hbar {
 
@@ -33,8 +34,8 @@ struct InitialStateBounds {
 /// variables d, held controls and, if wanted, the initial state, subject to constraints. A
 /// Transcription turns it into a nonlinear program in one of three ways.
 struct TrajectoryProblem {
-  Simulator simulator;                         ///< scene, horizon, integrator, measurements
-  std::shared_ptr<const DesignMap> map;        ///< onto the simulator's parameters
+  Horizon horizon;                             ///< scene, horizon, integrator, measurements
+  std::shared_ptr<const DesignMap> map;        ///< onto the horizon's parameters
   Objective objective;                         ///< of trajectory, controls and parameters
   std::vector<ConstraintPointer> constraints;  ///< their rows follow each other in this order
   HeldControls controls;

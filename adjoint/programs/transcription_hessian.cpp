@@ -18,7 +18,7 @@ Transcription::HessianPlan& Transcription::plan(solvers::HessianKind kind) {
 
 Transcription::HessianPlan Transcription::make_plan(solvers::HessianKind kind) const {
   HessianPlan out;
-  out.objective = problem_.objective.second_places(value_shape(problem_.simulator));
+  out.objective = problem_.objective.second_places(value_shape(problem_.horizon));
   add_second_places(out.objective, out.entries);
   if (kind == solvers::HessianKind::kExact) {
     int first = 0;

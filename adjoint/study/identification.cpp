@@ -6,6 +6,7 @@
 
 #include "hbar/adjoint/derivatives/tangent.h"
 #include "hbar/adjoint/terms/value_access.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar::study {
@@ -135,21 +136,21 @@ std::shared_ptr<const ObjectiveTerm> measured_data_term(const TrajectoryData& da
   return std::make_shared<MeasuredDataTerm>(data, sigma, weight);
 }
 
-Eigen::MatrixXd data_sensitivity(Simulator& simulator, const Trajectory& trajectory,
+Eigen::MatrixXd data_sensitivity(const Horizon& horizon, const Trajectory& trajectory,
                                  const DesignMap& map, const Eigen::VectorXd& d,
                                  const TrajectoryData& data, bool initial_state) {
   check_data(data, "data_sensitivity");
   check_parameters(trajectory, map, d);
-  const Eigen::Index dof = simulator.model().dof();
+  const Eigen::Index dof = horizon.model().dof();
   Directions directions =
-      Directions::zero(simulator, d.size() + (initial_state ? 2 * dof : Eigen::Index{0}));
+      Directions::zero(horizon, d.size() + (initial_state ? 2 * dof : Eigen::Index{0}));
   directions.p.leftCols(d.size()) = map.jacobian(d);
   if (initial_state) {
     directions.q0.middleCols(d.size(), dof).setIdentity();
     directions.qdot0.rightCols(dof).setIdentity();
   }
-  const Tangents tangents = TangentSweep(simulator).push_forward(trajectory, directions);
-  const TrajectoryValues values = simulator.values(trajectory);
+  const Tangents tangents = TangentSweep(horizon).push_forward(trajectory, directions);
+  const TrajectoryValues values = read_values(horizon, trajectory);
   Eigen::MatrixXd out(data.data.size(), directions.count());
   for (std::size_t i = 0; i < data.places.size(); ++i) {
     out.row(static_cast<Eigen::Index>(i)) =
@@ -158,15 +159,15 @@ Eigen::MatrixXd data_sensitivity(Simulator& simulator, const Trajectory& traject
   return out;
 }
 
-Information fisher_information(Simulator& simulator, const Trajectory& trajectory,
+Information fisher_information(const Horizon& horizon, const Trajectory& trajectory,
                                const DesignMap& map, const Eigen::VectorXd& d,
                                const TrajectoryData& data, const Eigen::VectorXd& sigma,
                                const IdentificationOptions& options) {
   const DesignVariables& variables = map.variables();
   Fit fit;
-  fit.sensitivity = data_sensitivity(simulator, trajectory, map, d, data, options.initial_state);
+  fit.sensitivity = data_sensitivity(horizon, trajectory, map, d, data, options.initial_state);
   fit.sigma = sigma_of_each(sigma, data, "fisher_information");
-  const TrajectoryValues values = simulator.values(trajectory);
+  const TrajectoryValues values = read_values(horizon, trajectory);
   fit.residual.resize(data.data.size());
   for (Eigen::Index i = 0; i < data.data.size(); ++i) {
     fit.residual[i] = value_at(values, data.places[static_cast<std::size_t>(i)]) - data.data[i];
@@ -178,10 +179,10 @@ Information fisher_information(Simulator& simulator, const Trajectory& trajector
   fit.estimate.head(d.size()) = d;
   fit.scale.head(d.size()) = variables.scale;
   if (options.initial_state) {
-    const TrajectoryNames names = trajectory_names(simulator);
+    const TrajectoryNames names = trajectory_names(horizon);
     for (const std::string& name : names.q) fit.names.push_back("initial " + name);
     for (const std::string& name : names.qdot) fit.names.push_back("initial " + name);
-    const Eigen::Index dof = simulator.model().dof();
+    const Eigen::Index dof = horizon.model().dof();
     fit.estimate.segment(d.size(), dof) = trajectory.inputs.q0;
     fit.estimate.tail(dof) = trajectory.inputs.qdot0;
   }

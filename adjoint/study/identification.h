@@ -4,7 +4,8 @@
 #include "hbar/adjoint/study/information.h"
 #include "hbar/adjoint/study/trajectory_csv.h"
 #include "hbar/adjoint/terms/objective.h"
-#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/horizon.h"
+#include "hbar/adjoint/trajectory/trajectory.h"
 
 namespace hbar::study {
 
@@ -30,13 +31,13 @@ struct IdentificationOptions {
 /// The derivatives of what was measured by design variables and, if options ask for it, by the
 /// initial state: a TangentSweep with a column for each.
 ///
-/// @param trajectory  whole, of this simulator, with p = map.parameters(d)
+/// @param trajectory  whole, of this horizon, with p = map.parameters(d)
 /// @param d           design variables                                               [d]
 /// @returns  one row per datum                                                       [data x k]
 /// @throws InvalidInput if sizes disagree, the trajectory has other parameters, or a place is not
 ///   one of the simulation's
 /// @throws NumericalFailure as TangentSweep::push_forward
-[[nodiscard]] Eigen::MatrixXd data_sensitivity(Simulator& simulator, const Trajectory& trajectory,
+[[nodiscard]] Eigen::MatrixXd data_sensitivity(const Horizon& horizon, const Trajectory& trajectory,
                                                const DesignMap& map, const Eigen::VectorXd& d,
                                                const TrajectoryData& data,
                                                bool initial_state = false);
@@ -47,7 +48,7 @@ struct IdentificationOptions {
 /// @param d      the estimate: where measured_data_term is least                     [d]
 /// @param sigma  standard deviation of each datum, or one for all                    [data or 1]
 /// @throws as data_sensitivity and information
-[[nodiscard]] Information fisher_information(Simulator& simulator, const Trajectory& trajectory,
+[[nodiscard]] Information fisher_information(const Horizon& horizon, const Trajectory& trajectory,
                                              const DesignMap& map, const Eigen::VectorXd& d,
                                              const TrajectoryData& data,
                                              const Eigen::VectorXd& sigma,

@@ -118,8 +118,8 @@ int read_step(const CsvCell& cell, const std::string& file, const TimeGrid& grid
 
 }  // namespace
 
-TrajectoryNames trajectory_names(const Simulator& simulator) {
-  const Model& model = simulator.model();
+TrajectoryNames trajectory_names(const Horizon& horizon) {
+  const Model& model = horizon.model();
   TrajectoryNames names;
   for (int i = 0; i < model.dof(); ++i) {
     names.q.push_back(model.coordinate_name(i));
@@ -135,7 +135,7 @@ TrajectoryNames trajectory_names(const Simulator& simulator) {
       }
     }
   }
-  names.measured = simulator.measured_names();
+  names.measured = horizon.measured_names();
   for (int i = 0; i < model.control_count(); ++i) {
     names.u.push_back("control." + model.control_name(i));
   }

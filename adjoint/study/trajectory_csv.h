@@ -4,7 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/horizon.h"
+#include "hbar/adjoint/trajectory/trajectory_values.h"
 #include "hbar/adjoint/trajectory/value_place.h"
 
 namespace hbar::study {
@@ -15,12 +16,12 @@ struct TrajectoryNames {
   std::vector<std::string> qdot;      ///< "rate.NAME"                               [dof]
   std::vector<std::string> v;         ///< "NAME.x", … of each end effector          [variables]
   std::vector<std::string> tactile;   ///< "SENSOR.POINT.shear0", …                  [readings]
-  std::vector<std::string> measured;  ///< Simulator::measured_names                  [measured]
+  std::vector<std::string> measured;  ///< Horizon::measured_names                  [measured]
   std::vector<std::string> u;         ///< "control.NAME"                            [controls]
 };
 
 /// The names of all numbers of a simulation.
-[[nodiscard]] TrajectoryNames trajectory_names(const Simulator& simulator);
+[[nodiscard]] TrajectoryNames trajectory_names(const Horizon& horizon);
 
 /// A table with a row per step k = 0 … N: time, coordinates, rates, end effectors, sensor readings,
 /// measured rows, and the controls that acted until then (none at k = 0).

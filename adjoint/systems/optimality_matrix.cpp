@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "hbar/adjoint/outputs/end_effectors.h"
+#include "hbar/adjoint/trajectory/horizon.h"
+#include "hbar/adjoint/trajectory/trajectory.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {
@@ -22,9 +24,9 @@ struct KktBlock {
 /// Where the unknowns of the KKT system stand: stage by stage q, u of a step that begins, μ.
 class Places {
  public:
-  Places(const Simulator& simulator, const Timeline& timeline, bool with_parameters)
-      : n_(simulator.model().dof()) {
-    const int controls = simulator.model().control_count();
+  Places(const Horizon& horizon, const Timeline& timeline, bool with_parameters)
+      : n_(horizon.model().dof()) {
+    const int controls = horizon.model().control_count();
     int next = 0;
     int begun = -1;
     for (int s = 1; s <= timeline.last_stage(); ++s) {
@@ -41,7 +43,7 @@ class Places {
       next += n_;
     }
     p_ = next;
-    const int parameters = with_parameters ? simulator.parameters().size() : 0;
+    const int parameters = with_parameters ? horizon.parameters().size() : 0;
     if (parameters > 0) {
       blocks_.push_back({next, 0, 0.0, 0});
     }
@@ -81,8 +83,8 @@ class Places {
 };
 
 /// E = ∂(what is followed)/∂q̄: the variables of every stage, or its coordinates.
-SparseMatrix followed_by_q(Simulator& simulator, const Trajectory& trajectory) {
-  const Model& model = simulator.model();
+SparseMatrix followed_by_q(const Horizon& horizon, const Trajectory& trajectory) {
+  const Model& model = horizon.model();
   const int n = model.dof();
   const int stages = trajectory.timeline.last_stage();
   const int variables = model.variable_count();
@@ -91,8 +93,7 @@ SparseMatrix followed_by_q(Simulator& simulator, const Trajectory& trajectory) {
     identity.setIdentity();
     return identity;
   }
-  Mechanism<double> mechanism = nominal_mechanism<double>(model);
-  apply_parameters<double>(model, simulator.parameters(), trajectory.inputs.p, mechanism);
+  const Mechanism<double>& mechanism = *trajectory.mechanism;
   Motion<double> motion(model.tree());
   const EndEffectors<double> end_effectors(model);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
@@ -130,8 +131,8 @@ SparseMatrix scaled_identity(Eigen::Index size, double value) {
   return out;
 }
 
-std::function<std::string(int)> kkt_names(const Simulator& simulator, const Places& places) {
-  return [model = simulator.shared_model(), blocks = places.blocks()](int index) {
+std::function<std::string(int)> kkt_names(const Horizon& horizon, const Places& places) {
+  return [model = horizon.shared_model(), blocks = places.blocks()](int index) {
     const auto after =
         std::upper_bound(blocks.begin(), blocks.end(), index,
                          [](int row, const KktBlock& block) { return row < block.begin; });
@@ -155,12 +156,12 @@ std::function<std::string(int)> kkt_names(const Simulator& simulator, const Plac
 
 }  // namespace
 
-void fill_gauss_newton(Simulator& simulator, const Trajectory& trajectory,
+void fill_gauss_newton(const Horizon& horizon, const Trajectory& trajectory,
                        const Linearization& linearization, const SystemOptions& weights,
                        TrajectorySystem& out) {
   const SparseMatrix& H = linearization.H.matrix();
   const SparseMatrix scaled = row_scales(H).asDiagonal() * H;
-  const SparseMatrix E = followed_by_q(simulator, trajectory);
+  const SparseMatrix E = followed_by_q(horizon, trajectory);
   const SparseMatrix by_forces = SparseMatrix(scaled.transpose()) * scaled;
   const SparseMatrix by_tracking = SparseMatrix(E.transpose()) * E;
   out.A = weights.forces * by_forces + weights.tracking * by_tracking;
@@ -170,13 +171,13 @@ void fill_gauss_newton(Simulator& simulator, const Trajectory& trajectory,
                  .block_sizes = linearization.block_sizes};
 }
 
-void fill_kkt(Simulator& simulator, const Trajectory& trajectory,
+void fill_kkt(const Horizon& horizon, const Trajectory& trajectory,
               const Linearization& linearization, const SystemOptions& weights,
               TrajectorySystem& out) {
   const SparseMatrix& H = linearization.H.matrix();
-  const Places places(simulator, trajectory.timeline, weights.parameters);
+  const Places places(horizon, trajectory.timeline, weights.parameters);
   const Eigen::VectorXd scales = row_scales(H);
-  const SparseMatrix E = followed_by_q(simulator, trajectory);
+  const SparseMatrix E = followed_by_q(horizon, trajectory);
   const SparseMatrix by_tracking = SparseMatrix(E.transpose()) * E;
   std::vector<Eigen::Triplet<double>> entries;
   const auto add_jacobian = [&](const SparseMatrix& dg, const auto& place) {
@@ -199,7 +200,7 @@ void fill_kkt(Simulator& simulator, const Trajectory& trajectory,
     entries.emplace_back(places.q(i), places.q(i), weights.damping);
     entries.emplace_back(places.mu(i), places.mu(i), -weights.slack);
   }
-  const int controls = simulator.model().control_count();
+  const int controls = horizon.model().control_count();
   const auto u_place = [&](int j) { return places.u(j, controls); };
   for (int j = 0; j < linearization.dg_du.cols(); ++j) {
     entries.emplace_back(u_place(j), u_place(j), weights.effort + weights.damping);
@@ -221,7 +222,7 @@ void fill_kkt(Simulator& simulator, const Trajectory& trajectory,
   }
   out.options = {.structure = solvers::Structure::kQuasiDefinite,
                  .block_sizes = places.block_sizes()};
-  out.name_of_unknown = kkt_names(simulator, places);
+  out.name_of_unknown = kkt_names(horizon, places);
 }
 
 }  // namespace hbar

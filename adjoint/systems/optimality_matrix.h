@@ -7,7 +7,7 @@ namespace hbar {
 /// Fills A, b and options with kGaussNewton's SᵀS + λI and √w Eᵀ·1.
 ///
 /// @param linearization  of the trajectory
-void fill_gauss_newton(Simulator& simulator, const Trajectory& trajectory,
+void fill_gauss_newton(const Horizon& horizon, const Trajectory& trajectory,
                        const Linearization& linearization, const SystemOptions& weights,
                        TrajectorySystem& out);
 
@@ -19,7 +19,7 @@ void fill_gauss_newton(Simulator& simulator, const Trajectory& trajectory,
 ///     [ D H̄          D ∂ḡ/∂u     −slack I    ]
 ///
 /// and with weights.parameters a last block of design parameters, λI and D ∂ḡ/∂p.
-void fill_kkt(Simulator& simulator, const Trajectory& trajectory,
+void fill_kkt(const Horizon& horizon, const Trajectory& trajectory,
               const Linearization& linearization, const SystemOptions& weights,
               TrajectorySystem& out);
 

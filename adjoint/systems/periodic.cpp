@@ -6,14 +6,16 @@
 #include "hbar/adjoint/derivatives/factorized_linearization.h"
 #include "hbar/adjoint/derivatives/stage_weights.h"
 #include "hbar/adjoint/systems/periodic_matrix.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/trajectory_residual.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {
 namespace {
 
-PeriodicOptions checked(const Simulator& simulator, PeriodicOptions options) {
-  const Eigen::Index n = simulator.model().dof();
+PeriodicOptions checked(const Horizon& horizon, PeriodicOptions options) {
+  const Eigen::Index n = horizon.model().dof();
   if (options.warm_up < 1) {
     throw InvalidInput(concat("periodic: warm_up is ", options.warm_up, "; it must be at least 1"));
   }
@@ -30,13 +32,15 @@ PeriodicOptions checked(const Simulator& simulator, PeriodicOptions options) {
 }  // namespace
 
 struct PeriodicSolver::Workspace final : public solvers::NewtonSystem {
-  Workspace(Simulator& s, PeriodicOptions o)
-      : simulator(s),
-        options(checked(s, std::move(o))),
-        residual_of(s),
-        linearizer(s),
+  Workspace(const Horizon& h, PeriodicOptions o)
+      : horizon(h),
+        options(checked(h, std::move(o))),
+        simulator(h),
+        residual_of(h),
+        linearizer(h),
         solver(options.solver),
-        end(s.model()) {}
+        history(h.model()),
+        end(h.model()) {}
 
   void residual(const Eigen::VectorXd& x, Eigen::VectorXd& g) override {
     close(x);
@@ -55,11 +59,13 @@ struct PeriodicSolver::Workspace final : public solvers::NewtonSystem {
   void warm_up(const Inputs& guess);
   [[nodiscard]] std::string failure_message(const solvers::NewtonReport& report) const;
 
-  Simulator& simulator;
+  Horizon horizon;
   PeriodicOptions options;
+  Simulator simulator;
   TrajectoryResidual residual_of;
   Linearizer linearizer;
   solvers::CachedSolver solver;
+  History history;
   StagePoint<double> end;
   Trajectory trajectory;
   double mismatch = 0.0;
@@ -71,7 +77,7 @@ void PeriodicSolver::Workspace::close(const Eigen::VectorXd& x) {
   trajectory.q.rightCols(last).reshaped() = x;
   trajectory.q.col(0) = trajectory.q.col(last) - options.advance;
   // The last rate depends on coordinates alone, not on the rates of earlier stages.
-  simulator.set_point(trajectory, last, end);
+  history.set_point(trajectory, last, end);
   trajectory.qdot.col(0) = end.qdot;
   trajectory.inputs.q0 = trajectory.q.col(0);
   trajectory.inputs.qdot0 = trajectory.qdot.col(0);
@@ -79,10 +85,10 @@ void PeriodicSolver::Workspace::close(const Eigen::VectorXd& x) {
 
 const Linearization& PeriodicSolver::Workspace::factorize_here() {
   const Linearization& system = linearizer.linearize(trajectory);
-  solver.factorize(periodic_matrix(simulator.model(), trajectory, system),
-                   linearizer.pattern_count(), [&] {
+  solver.factorize(periodic_matrix(horizon.model(), trajectory, system), linearizer.pattern_count(),
+                   [&] {
                      return solvers::MatrixDescription{periodic_options(system),
-                                                       stage_names(simulator, trajectory.timeline)};
+                                                       stage_names(horizon, trajectory.timeline)};
                    });
   return system;
 }
@@ -93,7 +99,7 @@ void PeriodicSolver::Workspace::warm_up(const Inputs& guess) {
   for (int i = 0; i < options.warm_up; ++i) {
     trajectory = simulator.rollout(inputs).trajectory();
     const int last = trajectory.timeline.last_stage();
-    refuse_changed_charts(simulator.model(), trajectory);
+    refuse_changed_charts(horizon.model(), trajectory);
     const Eigen::VectorXd q0 = trajectory.q.col(last) - options.advance;
     mismatch = std::max((q0 - inputs.q0).lpNorm<Eigen::Infinity>(),
                         (trajectory.qdot.col(last) - inputs.qdot0).lpNorm<Eigen::Infinity>());
@@ -104,19 +110,18 @@ void PeriodicSolver::Workspace::warm_up(const Inputs& guess) {
 }
 
 std::string PeriodicSolver::Workspace::failure_message(const solvers::NewtonReport& report) const {
-  const Model& model = simulator.model();
+  const Model& model = horizon.model();
   return concat("periodic: ", solvers::describe(report.status), " after ", report.iterations,
                 " iterations on the whole trajectory, |g| = ", report.residual,
-                ", largest correction in ",
-                stage_names(simulator, trajectory.timeline)(report.worst), " of ",
-                trajectory.timeline.last_stage(), " stages of ", model.dof(),
+                ", largest correction in ", stage_names(horizon, trajectory.timeline)(report.worst),
+                " of ", trajectory.timeline.last_stage(), " stages of ", model.dof(),
                 " coordinates; the last simulated period missed its start by ", mismatch,
                 ": simulate more periods first (warm_up), start nearer, add damping, or check "
                 "that the drive repeats after N steps");
 }
 
-PeriodicSolver::PeriodicSolver(Simulator& simulator, PeriodicOptions options)
-    : work_(std::make_unique<Workspace>(simulator, std::move(options))) {}
+PeriodicSolver::PeriodicSolver(const Horizon& horizon, PeriodicOptions options)
+    : work_(std::make_unique<Workspace>(horizon, std::move(options))) {}
 PeriodicSolver::~PeriodicSolver() = default;
 PeriodicSolver::PeriodicSolver(PeriodicSolver&&) noexcept = default;
 PeriodicSolver& PeriodicSolver::operator=(PeriodicSolver&&) noexcept = default;
@@ -145,12 +150,12 @@ PeriodicOrbit PeriodicSolver::solve(const Inputs& guess) {
 
 Gradient PeriodicSolver::gradient(const Trajectory& orbit, const Objective& objective) {
   Workspace& w = *work_;
-  const TrajectoryValues values = w.simulator.values(orbit);
+  const TrajectoryValues values = read_values(w.horizon, orbit);
   const TrajectoryPartials partials = objective.partials(values);
-  StageWeights weights = stage_weights(w.simulator, orbit, partials);
+  StageWeights weights = stage_weights(w.horizon, orbit, partials);
   const int last = orbit.timeline.last_stage();
   // The initial state is the last one: its weights go there.
-  add_rate_weights(w.simulator.model(), orbit, last, weights.qdot0, weights);
+  add_rate_weights(w.horizon.model(), orbit, last, weights.qdot0, weights);
   weights.q_bar.col(last) += weights.q_bar.col(0);
   const Eigen::VectorXd y_bar = weights.q_bar.rightCols(last).reshaped();
   w.trajectory = orbit;
@@ -162,14 +167,14 @@ Gradient PeriodicSolver::gradient(const Trajectory& orbit, const Objective& obje
   out.p = weights.p - system.dg_dp.transpose() * z_bar;
   out.u = weights.u;
   out.u.reshaped() -= system.dg_du.transpose() * z_bar;
-  out.q0.setZero(w.simulator.model().dof());
-  out.qdot0.setZero(w.simulator.model().dof());
+  out.q0.setZero(w.horizon.model().dof());
+  out.qdot0.setZero(w.horizon.model().dof());
   return out;
 }
 
-PeriodicOrbit solve_periodic(Simulator& simulator, const Inputs& guess,
+PeriodicOrbit solve_periodic(const Horizon& horizon, const Inputs& guess,
                              const PeriodicOptions& options) {
-  return PeriodicSolver(simulator, options).solve(guess);
+  return PeriodicSolver(horizon, options).solve(guess);
 }
 
 }  // namespace hbar

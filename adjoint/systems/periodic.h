@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/trajectory/trajectory.h"
 #include "hbar/solvers/linear/cached_solver.h"
 
 namespace hbar {
@@ -26,15 +27,15 @@ struct PeriodicOrbit {
 
 /// Finds periodic motions: Newton's method on ḡ(q̄, p, u, q_N − advance, q̇_N) = 0 for the whole
 /// trajectory at once. H̄ then has blocks above its diagonal (PeriodicMatrix), which is what general
-/// sparse solvers are for; the period is the simulator's N·h, as for a mechanism driven by
+/// sparse solvers are for; the period is the horizon's N·h, as for a mechanism driven by
 /// controls.
 ///
-/// BDF2 starts every period with its SDIRK2 step. Holds its workspace for one simulator and belongs
+/// BDF2 starts every period with its SDIRK2 step. Holds its workspace for one horizon and belongs
 /// to one thread at a time.
 class PeriodicSolver {
  public:
   /// @throws InvalidInput if warm_up or the size of advance is not as PeriodicOptions says
-  explicit PeriodicSolver(Simulator& simulator, PeriodicOptions options = {});
+  explicit PeriodicSolver(const Horizon& horizon, PeriodicOptions options = {});
   ~PeriodicSolver();
   PeriodicSolver(PeriodicSolver&&) noexcept;
   PeriodicSolver& operator=(PeriodicSolver&&) noexcept;
@@ -64,7 +65,7 @@ class PeriodicSolver {
 };
 
 /// One orbit: PeriodicSolver::solve.
-[[nodiscard]] PeriodicOrbit solve_periodic(Simulator& simulator, const Inputs& guess,
+[[nodiscard]] PeriodicOrbit solve_periodic(const Horizon& horizon, const Inputs& guess,
                                            const PeriodicOptions& options = {});
 
 }  // namespace hbar

@@ -1,5 +1,6 @@
 #include "hbar/adjoint/systems/periodic_matrix.h"
 
+#include "hbar/adjoint/trajectory/flat_stencil.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {

@@ -55,14 +55,14 @@ SystemKind find_system_kind(std::string_view name) {
   return static_cast<SystemKind>(place - kNames.begin());
 }
 
-TrajectorySystem assemble_system(SystemKind kind, Simulator& simulator,
+TrajectorySystem assemble_system(SystemKind kind, const Horizon& horizon,
                                  const Trajectory& trajectory, const SystemOptions& options) {
   check(options);
-  Linearizer linearizer(simulator);
+  Linearizer linearizer(horizon);
   const Linearization& system = linearizer.linearize(trajectory);
   TrajectorySystem out;
   out.kind = kind;
-  out.name_of_unknown = stage_names(simulator, trajectory.timeline);
+  out.name_of_unknown = stage_names(horizon, trajectory.timeline);
   switch (kind) {
     case SystemKind::kAdjoint:
       out.A = system.H.matrix();
@@ -71,15 +71,15 @@ TrajectorySystem assemble_system(SystemKind kind, Simulator& simulator,
                      .block_sizes = system.block_sizes};
       break;
     case SystemKind::kPeriodic:
-      out.A = periodic_matrix(simulator.model(), trajectory, system);
+      out.A = periodic_matrix(horizon.model(), trajectory, system);
       out.b = push(system);
       out.options = periodic_options(system);
       break;
     case SystemKind::kGaussNewton:
-      fill_gauss_newton(simulator, trajectory, system, options, out);
+      fill_gauss_newton(horizon, trajectory, system, options, out);
       break;
     case SystemKind::kKkt:
-      fill_kkt(simulator, trajectory, system, options, out);
+      fill_kkt(horizon, trajectory, system, options, out);
       break;
   }
   return out;

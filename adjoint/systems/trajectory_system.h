@@ -52,10 +52,10 @@ struct TrajectorySystem {
 /// b is −∂ḡ/∂q̇₀·1 for kAdjoint and kPeriodic (how the motion answers to a push at its start), and
 /// the negative gradient for a reference that lies 1 (rad or length) off for the other two.
 ///
-/// @param trajectory  whole, of this simulator
+/// @param trajectory  whole, of this horizon
 /// @throws InvalidInput for weights that are not as SystemOptions says, or a kPeriodic trajectory
 ///         whose exponential coordinates end in another chart than they start
-[[nodiscard]] TrajectorySystem assemble_system(SystemKind kind, Simulator& simulator,
+[[nodiscard]] TrajectorySystem assemble_system(SystemKind kind, const Horizon& horizon,
                                                const Trajectory& trajectory,
                                                const SystemOptions& options = {});
 

@@ -7,6 +7,8 @@
 #include "hbar/adjoint/terms/value_access.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/base/nearest_name.h"
+#include "hbar/core/model/model.h"
+#include "hbar/core/parameters/parameters.h"
 
 namespace hbar {
 namespace {

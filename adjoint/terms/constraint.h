@@ -6,10 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/trajectory_values.h"
 #include "hbar/adjoint/trajectory/value_place.h"
 
 namespace hbar {
+
+class Model;
+class ParameterSet;
 
 /// The rows of a constraint term: lower ≤ c ≤ upper; lower = upper is an equation.
 struct ConstraintRows {

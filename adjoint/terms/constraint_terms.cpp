@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "hbar/core/base/error.h"
+#include "hbar/core/model/model.h"
+#include "hbar/core/parameters/parameters.h"
 
 namespace hbar {
 namespace {

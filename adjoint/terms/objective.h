@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/trajectory_values.h"
 #include "hbar/adjoint/trajectory/value_place.h"
 
 namespace hbar {

@@ -3,6 +3,7 @@
 #include <array>
 #include <type_traits>
 
+#include "hbar/adjoint/trajectory/horizon.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {
@@ -103,18 +104,18 @@ std::vector<ValuePlace> all_places(const TrajectoryValues& shape) {
   return out;
 }
 
-TrajectoryValues value_shape(const Simulator& simulator) {
-  const Model& model = simulator.model();
-  const int steps = simulator.options().steps;
+TrajectoryValues value_shape(const Horizon& horizon) {
+  const Model& model = horizon.model();
+  const int steps = horizon.options().steps;
   TrajectoryValues out;
-  out.h = simulator.options().h;
+  out.h = horizon.options().h;
   out.q.setZero(model.dof(), steps + 1);
   out.qdot.setZero(model.dof(), steps + 1);
   out.v.setZero(model.variable_count(), steps + 1);
   out.tactile.setZero(model.tactile_count(), steps + 1);
-  out.measured.setZero(simulator.measured_count(), steps + 1);
+  out.measured.setZero(horizon.measured_count(), steps + 1);
   out.u.setZero(model.control_count(), steps);
-  out.p.setZero(simulator.parameters().size());
+  out.p.setZero(horizon.parameters().size());
   return out;
 }
 

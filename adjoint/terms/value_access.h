@@ -9,6 +9,8 @@
 
 namespace hbar {
 
+class Horizon;
+
 /// How TrajectoryValues move along one direction; shaped like them. `h` is 0.
 using ValueTangent = TrajectoryValues;
 
@@ -32,8 +34,8 @@ using ValueTangent = TrajectoryValues;
 /// @throws InvalidInput naming the place if the partials have none there
 [[nodiscard]] double& partial_at(TrajectoryPartials& partials, const ValuePlace& place);
 
-/// Values of a simulator's trajectories, sized but zero: what terms ask for before there are any.
-[[nodiscard]] TrajectoryValues value_shape(const Simulator& simulator);
+/// Values of a horizon's trajectories, sized but zero: what terms ask for before there are any.
+[[nodiscard]] TrajectoryValues value_shape(const Horizon& horizon);
 
 /// How partials move along a tangent of the values: adds second_i · (δb at a, δa at b) for each
 /// place.

@@ -75,6 +75,15 @@ void History::gather(const Trajectory& trajectory, const MatrixX<S>& q, const Ma
   });
 }
 
+void History::set_point(const Trajectory& trajectory, int stage, StagePoint<double>& point) {
+  const Stage& row = trajectory.timeline.stage(stage);
+  gather(trajectory, stage, qdot_past_, a_past_, point.start);
+  point.rate = row.rate;
+  point.u = trajectory.inputs.u.col(row.step);
+  point.q = trajectory.q.col(stage);
+  set_rates(qdot_past_, a_past_, point);
+}
+
 template <Scalar S>
 void History::scatter(const Trajectory& trajectory, const MatrixX<S>& q, const MatrixX<S>& qdot,
                       int stage, const VectorX<S>& y_qdot, const VectorX<S>& y_a,

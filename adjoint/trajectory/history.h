@@ -9,9 +9,12 @@ namespace hbar {
 ///
 /// Along an edge (stage ← earlier) coordinates pass unchanged, but for the exponential nodes whose
 /// chart changed in between: their r passes as φ(r) and their rate as Dφ(r) ṙ.
+///
+/// Borrows the model. Holds a little workspace and belongs to one thread at a time.
 class History {
  public:
-  explicit History(const Model& model) : model_(model) {}
+  explicit History(const Model& model)
+      : model_(model), qdot_past_(model.dof()), a_past_(model.dof()) {}
 
   /// Nodes whose chart differs between two stages, i.e. that switched an odd number of times.
   void switched_nodes(const Trajectory& trajectory, int earlier, int stage,
@@ -41,6 +44,9 @@ class History {
     point.a = point.rate * point.qdot + a_past;
   }
 
+  /// Sets `point` to a stage of a trajectory.
+  void set_point(const Trajectory& trajectory, int stage, StagePoint<double>& point);
+
   /// Transpose of gather: weights on its three results become weights on earlier states.
   ///
   /// @param y_qdot, y_a       weights on qdot_past, a_past                       [dof]
@@ -59,6 +65,8 @@ class History {
 
  private:
   const Model& model_;
+  Eigen::VectorXd qdot_past_;  // of set_point
+  Eigen::VectorXd a_past_;
 };
 
 }  // namespace hbar

@@ -1,24 +1,18 @@
 #pragma once
 
 #include <Eigen/LU>
+#include <memory>
 #include <vector>
 
+#include "hbar/adjoint/trajectory/inputs.h"
 #include "hbar/adjoint/trajectory/timeline.h"
+#include "hbar/core/base/scalar.h"
 #include "hbar/solvers/newton/newton.h"
 
 namespace hbar {
 
-/// What a simulation is a function of. Time runs along columns.
-struct Inputs {
-  Eigen::VectorXd p;   ///< design parameters, in the ParameterSet's order      [parameters]
-  Eigen::MatrixXd u;   ///< controls, column k acts during step k               [controls x steps]
-  Eigen::VectorXd q0;  ///< initial coordinates                                 [dof]
-  Eigen::VectorXd qdot0;  ///< their rates                                         [dof]
-};
-
-/// The step whose control measurements at the end of step k − 1 read: the one that ends there; at
-/// the start, the first.
-[[nodiscard]] constexpr int measured_step(int k) { return k > 0 ? k - 1 : 0; }
+template <Scalar S>
+struct Mechanism;
 
 /// From stage + 1 on, the exponential coordinates of `node` are in the other chart (chart.h).
 struct ChartSwitch {
@@ -29,7 +23,9 @@ struct ChartSwitch {
 /// A computed trajectory q̄: every stage's coordinates and rates, and what later passes reuse.
 struct Trajectory {
   Timeline timeline;
-  Inputs inputs;                              ///< what it was computed from
+  Inputs inputs;  ///< what it was computed from
+  /// The model's numbers with inputs.p applied, once for everything that reads the trajectory.
+  std::shared_ptr<const Mechanism<double>> mechanism;
   Eigen::MatrixXd q;                          ///< per stage, column 0 is q0      [dof x stages]
   Eigen::MatrixXd qdot;                       ///< per stage                      [dof x stages]
   std::vector<ChartSwitch> chart_switches;    ///< ascending by stage

@@ -1,43 +1,43 @@
 #pragma once
 
+#include <vector>
+
 #include "hbar/adjoint/outputs/instant_outputs.h"
-#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/horizon.h"
+#include "hbar/adjoint/trajectory/trajectory.h"
+#include "hbar/adjoint/trajectory/trajectory_values.h"
 
 namespace hbar {
 
-/// Reads off a trajectory what objectives, constraints and people want to know: Simulator's part
-/// that comes after simulating.
+/// Reads off trajectories what objectives, constraints and people want to know.
 ///
-/// Borrows the model; holds its workspace and belongs to one thread at a time.
+/// Holds its workspace and belongs to one thread at a time.
 class ValueReader {
  public:
-  /// @throws InvalidInput if the model cannot have the measurements
-  ValueReader(const Model& model, const std::vector<Measurement>& measurements);
+  explicit ValueReader(Horizon horizon);
 
-  /// The values at the steps' ends.
-  ///
-  /// @param set  of the trajectory's parameters
-  /// @param h    nominal time step
-  [[nodiscard]] TrajectoryValues values(const ParameterSet& set, const Trajectory& trajectory,
-                                        double h);
+  /// The values at the steps' ends of a trajectory of the horizon. Measurements read the control of
+  /// the step that ends, at k = 0 that of the first step.
+  [[nodiscard]] TrajectoryValues values(const Trajectory& trajectory);
 
   /// What each contact did at the steps' ends: [step 0 … N][contact].
   [[nodiscard]] std::vector<std::vector<ContactSummary>> contact_history(
-      const ParameterSet& set, const Trajectory& trajectory);
-
-  /// Names of the measured rows.
-  [[nodiscard]] const std::vector<std::string>& measured_names() const {
-    return outputs_.measured_names();
-  }
+      const Trajectory& trajectory);
 
  private:
-  const Model& model_;
-  Mechanism<double> mechanism_;
+  Horizon horizon_;
   Motion<double> motion_;
   InstantOutputs<double> outputs_;
   OutputRows<double> rows_;
   ContactForces<double> contacts_;
   Eigen::VectorXd none_;  // accelerations, which nothing here reads
 };
+
+/// ValueReader::values of one trajectory.
+[[nodiscard]] TrajectoryValues read_values(const Horizon& horizon, const Trajectory& trajectory);
+
+/// ValueReader::contact_history of one trajectory.
+[[nodiscard]] std::vector<std::vector<ContactSummary>> contact_history(
+    const Horizon& horizon, const Trajectory& trajectory);
 
 }  // namespace hbar

@@ -136,7 +136,7 @@ Optimised optimise(Transcription& program, const OptimiseArguments& arguments,
   scene::write_file_atomically(arguments.out / "iterations.csv", iterations_csv(out.iterations));
   scene::write_file_atomically(
       arguments.out / "trajectory.csv",
-      study::trajectory_csv(study::trajectory_names(program.problem().simulator),
+      study::trajectory_csv(study::trajectory_names(program.problem().horizon),
                             program.trajectory_values(out.result.x)));
   solvers::DiagnosisOptions diagnosis;
   diagnosis.objective_scale = options.objective_scale;

@@ -113,15 +113,14 @@ Reach make_reach(const std::filesystem::path& scene_file, const ReachOptions& op
   if (options.mass_weight != 0.0) {
     objective.add(mass_term(set, out.phalanges, 10.0 * options.mass_weight));
   }
-  out.problem =
-      transcribe(TrajectoryProblem{.simulator = Simulator(model, std::move(set), simulation),
-                                   .map = std::move(map),
-                                   .objective = std::move(objective),
-                                   .constraints = std::move(constraints),
-                                   .controls = std::move(controls),
-                                   .q0 = kStart,
-                                   .qdot0 = {}},
-                 options.transcription);
+  out.problem = transcribe(TrajectoryProblem{.horizon = Horizon(model, std::move(set), simulation),
+                                             .map = std::move(map),
+                                             .objective = std::move(objective),
+                                             .constraints = std::move(constraints),
+                                             .controls = std::move(controls),
+                                             .q0 = kStart,
+                                             .qdot0 = {}},
+                           options.transcription);
   return out;
 }
 

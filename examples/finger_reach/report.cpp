@@ -108,7 +108,7 @@ std::string summary(const Reach& reach, const Outcome& outcome) {
 std::string result_json(const Reach& reach, const Outcome& outcome) {
   const solvers::IpoptResult& result = outcome.optimised.result;
   const DesignVariables& design = reach.problem->problem().map->variables();
-  const SimulationOptions& simulation = reach.problem->problem().simulator.options();
+  const SimulationOptions& simulation = reach.problem->problem().horizon.options();
   Json out = {{"status", solvers::to_string(result.status)},
               {"converged", result.converged()},
               {"feasible", result.feasible},

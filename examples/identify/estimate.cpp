@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hbar/adjoint/study/identification.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 #include "hbar/solvers/nlp/nlopt.h"
 
@@ -66,7 +67,7 @@ std::unique_ptr<Transcription> misfit_program(const Rig& rig, const Recording& r
   }
   controls.lower = controls.start.reshaped();
   controls.upper = controls.lower;
-  return transcribe(TrajectoryProblem{.simulator = rig.simulator,
+  return transcribe(TrajectoryProblem{.horizon = rig.horizon,
                                       .map = rig.map,
                                       .objective = Objective(study::measured_data_term(
                                           recording.data, recording.sigma)),
@@ -88,14 +89,14 @@ solvers::IpoptOptions fit_options(const Recording& recording) {
 
 study::Information information_at(const Transcription& program, const Recording& recording,
                                   const Eigen::VectorXd& x) {
-  Simulator simulator = program.problem().simulator;
-  const Rollout rollout = simulator.rollout(program.inputs(x));
+  Horizon horizon = program.problem().horizon;
+  const Rollout rollout = simulate(horizon, program.inputs(x));
   if (!rollout.converged()) {
     throw solvers::EvaluationError(rollout.report().message);
   }
   study::IdentificationOptions options;
   options.information.level = kLevel;
-  return study::fisher_information(simulator, rollout.trajectory(), *program.problem().map,
+  return study::fisher_information(horizon, rollout.trajectory(), *program.problem().map,
                                    program.design(x), recording.data, recording.sigma, options);
 }
 

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "hbar/adjoint/programs/transcription.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/scene/build_model.h"
 #include "hbar/core/scene/read_xml.h"
@@ -46,7 +48,7 @@ Eigen::MatrixXd excitation(int steps, bool sliding) {
 /// The names of the controls and of the coordinates that are measured.
 study::TrajectoryNames recorded_names(const Rig& rig, const Sigmas& sigmas,
                                       std::vector<int>& coordinates) {
-  const study::TrajectoryNames all = study::trajectory_names(rig.simulator);
+  const study::TrajectoryNames all = study::trajectory_names(rig.horizon);
   study::TrajectoryNames out;
   out.u = all.u;
   for (std::size_t i = 0; i < all.q.size(); ++i) {
@@ -151,7 +153,7 @@ Rig make_rig(const RigOptions& options) {
   simulation.h = kTimeStep;
   simulation.steps = options.steps;
   simulation.restarts = segment_starts(options.steps, options.segments);
-  return {.simulator = Simulator(model, set, simulation),
+  return {.horizon = Horizon(model, set, simulation),
           .map = std::make_shared<UnknownsMap>(set, options.unknowns, start),
           .u = excitation(options.steps, options.sliding),
           .q0 = Eigen::Vector3d(0.0, 0.0, kFirstAngle)};
@@ -160,12 +162,12 @@ Rig make_rig(const RigOptions& options) {
 std::string recorded_csv(const Rig& rig, const Sigmas& sigmas, std::mt19937_64& random) {
   std::vector<int> coordinates;
   const study::TrajectoryNames names = recorded_names(rig, sigmas, coordinates);
-  Simulator simulator = rig.simulator;
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon = rig.horizon;
+  Inputs inputs = horizon.nominal_inputs();
   inputs.p = rig.map->parameters(rig.map->nominal());
   inputs.u = rig.u;
   inputs.q0 = rig.q0;
-  const TrajectoryValues truth = simulator.values(simulator.rollout(inputs).trajectory());
+  const TrajectoryValues truth = read_values(horizon, simulate(horizon, inputs).trajectory());
   TrajectoryValues recorded;
   recorded.h = truth.h;
   recorded.u = truth.u;
@@ -182,9 +184,9 @@ std::string recorded_csv(const Rig& rig, const Sigmas& sigmas, std::mt19937_64& 
 
 Recording read_recording(const Rig& rig, const Sigmas& sigmas, const std::string& text,
                          const std::string& file) {
-  const study::TrajectoryNames names = study::trajectory_names(rig.simulator);
+  const study::TrajectoryNames names = study::trajectory_names(rig.horizon);
   const study::TrajectoryData all = study::read_trajectory_csv(
-      text, file, names, {.h = rig.simulator.options().h, .steps = rig.simulator.options().steps});
+      text, file, names, {.h = rig.horizon.options().h, .steps = rig.horizon.options().steps});
   Recording out;
   out.u = controls_of(all, rig, file);
   out.data.names = all.names;

@@ -69,7 +69,7 @@ struct RigOptions {
 
 /// A carriage whose motors push and press in a known way, with a rod that starts turned by 0.8 rad.
 struct Rig {
-  Simulator simulator;
+  Horizon horizon;
   std::shared_ptr<const UnknownsMap> map;
   Eigen::MatrixXd u;   ///< known controls                                       [controls x N]
   Eigen::VectorXd q0;  ///< known, at rest                                              [dof]

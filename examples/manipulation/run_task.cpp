@@ -93,7 +93,7 @@ example::ExitCode run(const Task& task, const std::filesystem::path& out, int ma
   scene::write_file_atomically(out / "result.json", result_json(task, result));
   scene::write_file_atomically(
       out / "trajectory.csv",
-      study::trajectory_csv(study::trajectory_names(result.problem->problem().simulator),
+      study::trajectory_csv(study::trajectory_names(result.problem->problem().horizon),
                             result.values));
   scene::write_file_atomically(out / "iterations.csv",
                                example::iterations_csv(progress.iterations()));
@@ -122,7 +122,7 @@ TaskResult solve_task(const Task& task, const TaskOptions& options) {
   TaskResult out;
   {
     const auto full = make_problem(task, 1.0);
-    out.start_errors = goal_errors(task, full->problem().simulator.model(),
+    out.start_errors = goal_errors(task, full->problem().horizon.model(),
                                    full->trajectory_values(full->variables().start));
   }
   Eigen::VectorXd x;
@@ -142,7 +142,7 @@ TaskResult solve_task(const Task& task, const TaskOptions& options) {
     }
   }
   out.values = out.problem->trajectory_values(out.last.x);
-  out.errors = goal_errors(task, out.problem->problem().simulator.model(), out.values);
+  out.errors = goal_errors(task, out.problem->problem().horizon.model(), out.values);
   return out;
 }
 

@@ -124,7 +124,7 @@ std::unique_ptr<Transcription> make_problem(const Task& task, double contact_sca
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.dof());
   objective.add(squared_velocity(task.velocity_weight))
       .add(terminal_state(rest, rest, 0.0, task.rest_weight));
-  return transcribe(TrajectoryProblem{.simulator = Simulator(model, set, simulation),
+  return transcribe(TrajectoryProblem{.horizon = Horizon(model, set, simulation),
                                       .map = std::move(map),
                                       .objective = std::move(objective),
                                       .constraints = {},

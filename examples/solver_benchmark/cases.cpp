@@ -2,6 +2,7 @@
 
 #include "families.h"
 #include "hbar/adjoint/programs/load_problem.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar::solver_benchmark {
@@ -19,10 +20,10 @@ Problem family_problem(const Case& which, const std::atomic<bool>* stop) {
   options.steps = which.steps;
   options.keep_factors = false;
   options.stop = stop;
-  Simulator simulator(model, ParameterSet::named(model, {}), options);
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon(model, ParameterSet::named(model, {}), options);
+  Inputs inputs = horizon.nominal_inputs();
   set_gentle_motion(family, model, inputs);
-  return {std::move(simulator), Objective(), std::move(inputs)};
+  return {std::move(horizon), Objective(), std::move(inputs)};
 }
 
 Problem scene_problem(const Case& which, const std::atomic<bool>* stop) {
@@ -54,7 +55,7 @@ std::string name_of(const Case& which) {
 
 struct CaseAssembler::Motion {
   Case which;
-  Simulator simulator;
+  Horizon horizon;
   Trajectory trajectory;
 };
 
@@ -66,26 +67,26 @@ CaseAssembler::Motion& CaseAssembler::motion_of(const Case& which) {
     motion_.reset();  // its memory is free for the next one
     Problem problem =
         which.family.empty() ? scene_problem(which, stop_) : family_problem(which, stop_);
-    Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-    motion_ = std::make_unique<Motion>(
-        Motion{which, std::move(problem.simulator), std::move(trajectory)});
+    Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+    motion_ =
+        std::make_unique<Motion>(Motion{which, std::move(problem.horizon), std::move(trajectory)});
   }
   return *motion_;
 }
 
 BenchmarkMatrix CaseAssembler::assemble(const Case& which) {
   Motion& motion = motion_of(which);
-  Simulator& simulator = motion.simulator;
-  TrajectorySystem system = assemble_system(which.system, simulator, motion.trajectory);
+  const Horizon& horizon = motion.horizon;
+  TrajectorySystem system = assemble_system(which.system, horizon, motion.trajectory);
   BenchmarkMatrix out;
   out.label = {.name = name_of(which),
                .source = source_name(which),
                .family = which.family,
                .system = std::string(name_of(which.system)),
                .integrator = which.integrator,
-               .dof = simulator.model().dof(),
+               .dof = horizon.model().dof(),
                .steps = which.steps,
-               .h = simulator.options().h};
+               .h = horizon.options().h};
   out.A = std::move(system.A);
   out.b = std::move(system.b);
   out.options = std::move(system.options);

@@ -33,13 +33,13 @@ struct Family {
 
 /// A motion that goes on: controls swing gently, each coordinate's out of step with the next.
 ///
-/// @param inputs     of the model's simulator; q0 and u are set
+/// @param inputs     of the model's horizon; q0 and u are set
 /// @param amplitude  of the controls
 void set_swinging_controls(Inputs& inputs, double amplitude);
 
 /// The start of a family's motion.
 ///
-/// @param inputs  of a simulator of make_model(family, …); q0, qdot0 and u are set
+/// @param inputs  of a horizon of make_model(family, …); q0, qdot0 and u are set
 void set_gentle_motion(const Family& family, const Model& model, Inputs& inputs);
 
 }  // namespace hbar::solver_benchmark

@@ -11,6 +11,7 @@
 
 #include "examples/solver_benchmark/families.h"
 #include "hbar/adjoint/systems/trajectory_system.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 #include "hbar/solvers/linear/accuracy.h"
 #include "hbar/solvers/linear/solver_suite.h"
@@ -56,14 +57,14 @@ int main() {
   options.integrator = "bdf2";
   options.h = chain.h;
   options.steps = 1000;
-  hbar::Simulator simulator(model, hbar::ParameterSet::named(model, {}), options);
-  hbar::Inputs inputs = simulator.nominal_inputs();
+  hbar::Horizon horizon(model, hbar::ParameterSet::named(model, {}), options);
+  hbar::Inputs inputs = horizon.nominal_inputs();
   hbar::solver_benchmark::set_gentle_motion(chain, model, inputs);
-  const hbar::Trajectory trajectory = simulator.rollout(inputs).trajectory();
+  const hbar::Trajectory trajectory = simulate(horizon, inputs).trajectory();
 
   // 2. Its adjoint system, and the solver that is picked for it.
   const hbar::TrajectorySystem system =
-      hbar::assemble_system(hbar::SystemKind::kAdjoint, simulator, trajectory);
+      hbar::assemble_system(hbar::SystemKind::kAdjoint, horizon, trajectory);
   const auto choice = hbar::solvers::choose_solver(system.options, system.A);
   std::printf("%d rows, %d entries; auto takes %s: %s\n", static_cast<int>(system.A.rows()),
               static_cast<int>(system.A.nonZeros()), choice.name.c_str(), choice.reason.c_str());

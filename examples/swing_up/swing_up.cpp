@@ -56,7 +56,7 @@ SwingUp make_swing_up(const std::filesystem::path& scene, int steps) {
   HeldControls controls;
   controls.lower = Eigen::VectorXd::Constant(1, -1.0);
   controls.upper = Eigen::VectorXd::Constant(1, 1.0);
-  return {.problem = {.simulator = Simulator(model, std::move(set), simulation),
+  return {.problem = {.horizon = Horizon(model, std::move(set), simulation),
                       .map = std::move(map),
                       .objective = std::move(objective),
                       .constraints = swing_up_constraints(model, steps),

@@ -23,10 +23,10 @@ std::vector<std::string> linear_solver_names() {
 Gradient gradient_of(LoadedProblem& loaded, const Trajectory& trajectory) {
   Problem& problem = loaded.problem;
   if (loaded.linear_solver == "sweep") {
-    return gradient(problem.simulator, trajectory, problem.objective);
+    return gradient(problem.horizon, trajectory, problem.objective);
   }
 #ifdef HBAR_HAVE_SUITE
-  AssembledAdjoint adjoint(problem.simulator, solvers::solver_factory(loaded.linear_solver));
+  AssembledAdjoint adjoint(problem.horizon, solvers::solver_factory(loaded.linear_solver));
   return adjoint.gradient(trajectory, problem.objective);
 #else
   throw InvalidInput(concat("linear_solver \"", loaded.linear_solver,

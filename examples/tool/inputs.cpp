@@ -109,7 +109,7 @@ LoadedProblem load(const Arguments& arguments) {
   try {
     LoadedProblem loaded = load_problem(arguments.scene, arguments.load);
     Inputs& inputs = loaded.problem.inputs;
-    const Model& model = loaded.problem.simulator.model();
+    const Model& model = loaded.problem.horizon.model();
     set_state(arguments.q0, "--q0", model, inputs.q0);
     set_state(arguments.qdot0, "--qdot0", model, inputs.qdot0);
     if (arguments.controls) {

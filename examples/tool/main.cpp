@@ -40,15 +40,15 @@ std::string status_word(RolloutStatus status) {
 /// Simulates, and differentiates if asked and nothing came between.
 Results run(LoadedProblem& loaded, bool with_gradient) {
   Problem& problem = loaded.problem;
-  const Rollout rollout = problem.simulator.rollout(problem.inputs);
+  const Rollout rollout = simulate(problem.horizon, problem.inputs);
   const Trajectory& trajectory = rollout.partial();
   Results out;
   out.report = rollout.report();
   out.status = status_word(out.report.status);
   out.message = out.report.message;
-  out.values = problem.simulator.values(trajectory);
-  if (problem.simulator.model().contact_count() > 0) {
-    out.contact = problem.simulator.contact_history(trajectory);
+  out.values = read_values(problem.horizon, trajectory);
+  if (problem.horizon.model().contact_count() > 0) {
+    out.contact = contact_history(problem.horizon, trajectory);
   }
   for (int k = 0; k < trajectory.step_count(); ++k) {
     out.newton.push_back(trajectory.newton_iterations(k));
@@ -119,8 +119,7 @@ ExitCode run_command(const Arguments& given) {
   check_outputs(arguments, loaded);
   switch (arguments.command) {
     case Command::kInfo:
-      write_stdout(
-          describe(loaded.problem.simulator.model(), loaded.problem.simulator.parameters()));
+      write_stdout(describe(loaded.problem.horizon.model(), loaded.problem.horizon.parameters()));
       return ExitCode::kOk;
     case Command::kSimulate:
     case Command::kGradient:

@@ -7,6 +7,8 @@
 #include "hbar/adjoint/derivatives/check_gradient.h"
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/programs/load_problem.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 
 namespace hbar::tool {
 

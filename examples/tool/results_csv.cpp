@@ -6,7 +6,7 @@
 namespace hbar::tool {
 
 std::string results_csv(const LoadedProblem& loaded, const Results& results) {
-  const Model& model = loaded.problem.simulator.model();
+  const Model& model = loaded.problem.horizon.model();
   const TrajectoryValues& values = results.values;
   std::string text = "time";
   for (const std::string& name : coordinate_names(model)) {

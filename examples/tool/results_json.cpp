@@ -118,16 +118,16 @@ Json gradient_json(const ParameterSet& parameters, const Eigen::VectorXd& p,
 
 /// What every file says of where it comes from.
 Json header(const LoadedProblem& loaded) {
-  const Simulator& simulator = loaded.problem.simulator;
-  const Model& model = simulator.model();
+  const Horizon& horizon = loaded.problem.horizon;
+  const Model& model = horizon.model();
   return {{"hbar", HBAR_VERSION},
           {"scene", loaded.files.front().string()},
           {"model", model.name()},
           {"units", unit_system(model)},
-          {"integrator", simulator.options().integrator},
-          {"h", simulator.options().h},
-          {"steps", simulator.options().steps},
-          {"newton_tol", simulator.options().newton.tol},
+          {"integrator", horizon.options().integrator},
+          {"h", horizon.options().h},
+          {"steps", horizon.options().steps},
+          {"newton_tol", horizon.options().newton.tol},
           {"linear_solver", loaded.linear_solver}};
 }
 
@@ -155,7 +155,7 @@ Json contact_json(const Model& model, const Results& results) {
 }  // namespace
 
 std::string results_json(const LoadedProblem& loaded, const Results& results) {
-  const Model& model = loaded.problem.simulator.model();
+  const Model& model = loaded.problem.horizon.model();
   const TrajectoryValues& values = results.values;
   Json out = header(loaded);
   out["status"] = results.status;
@@ -180,7 +180,7 @@ std::string results_json(const LoadedProblem& loaded, const Results& results) {
   }
   if (results.gradient) {
     out["gradient"] =
-        gradient_json(loaded.problem.simulator.parameters(), values.p, *results.gradient);
+        gradient_json(loaded.problem.horizon.parameters(), values.p, *results.gradient);
   }
   return Writer().write(out);
 }

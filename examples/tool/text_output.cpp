@@ -261,8 +261,8 @@ std::string sensor_table(const Model& model, const TrajectoryValues& values) {
 }
 
 std::string gradient_lines(const LoadedProblem& loaded, const Gradient& gradient) {
-  const Model& model = loaded.problem.simulator.model();
-  const ParameterSet& parameters = loaded.problem.simulator.parameters();
+  const Model& model = loaded.problem.horizon.model();
+  const ParameterSet& parameters = loaded.problem.horizon.parameters();
   std::string text = "gradient of the objective\n";
   Table table;
   if (gradient.u.size() > 0) {
@@ -295,9 +295,9 @@ std::string describe(const Model& model, const ParameterSet& selected) {
 }
 
 std::string summarize(const LoadedProblem& loaded, const Results& results) {
-  const Simulator& simulator = loaded.problem.simulator;
-  const Model& model = simulator.model();
-  const SimulationOptions& options = simulator.options();
+  const Horizon& horizon = loaded.problem.horizon;
+  const Model& model = horizon.model();
+  const SimulationOptions& options = horizon.options();
   const TrajectoryValues& values = results.values;
   const int iterations = std::accumulate(results.newton.begin(), results.newton.end(), 0);
   std::string text =

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar::walker {
@@ -10,10 +12,10 @@ namespace {
 constexpr int kPowers = 4;  // measured rows before the forces of the feet
 constexpr int kForceRows = 4;
 
-double weight_of(const Simulator& simulator, const Eigen::VectorXd& p) {
-  Mechanism<double> mechanism = nominal_mechanism<double>(simulator.model());
-  apply_parameters<double>(simulator.model(), simulator.parameters(), p, mechanism);
-  return mechanism.mass.sum() * simulator.model().gravity().norm();
+double weight_of(const Horizon& horizon, const Eigen::VectorXd& p) {
+  Mechanism<double> mechanism = nominal_mechanism<double>(horizon.model());
+  apply_parameters<double>(horizon.model(), horizon.parameters(), p, mechanism);
+  return mechanism.mass.sum() * horizon.model().gravity().norm();
 }
 
 /// Controls of a whole gait: in the second half the legs change places.
@@ -75,42 +77,42 @@ double slip_of(const TrajectoryValues& values, const Gait& gait, const Model& mo
 
 Gait examine(const Plan& plan, const TrajectoryProblem& problem, const TrajectoryValues& values,
              const Eigen::VectorXd& lengths) {
-  SimulationOptions options = problem.simulator.options();
+  SimulationOptions options = problem.horizon.options();
   options.steps = 2 * plan.steps;
   options.restarts = plan.restarts;
   options.restarts.push_back(plan.steps);
   for (const int step : plan.restarts) {
     options.restarts.push_back(plan.steps + step);
   }
-  Simulator simulator(problem.simulator.shared_model(), problem.simulator.parameters(), options);
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon(problem.horizon.shared_model(), problem.horizon.parameters(), options);
+  Inputs inputs = horizon.nominal_inputs();
   inputs.p = values.p;
   inputs.u = both_halves(values.u);
   inputs.q0 = values.q.col(0);
   inputs.qdot0 = values.qdot.col(0);
-  const Rollout rollout = simulator.rollout(inputs);
-  const TrajectoryValues stride = simulator.values(rollout.trajectory());
+  const Rollout rollout = simulate(horizon, inputs);
+  const TrajectoryValues stride = read_values(horizon, rollout.trajectory());
 
   Gait gait;
   gait.lengths = lengths;
-  gait.weight = weight_of(simulator, values.p);
+  gait.weight = weight_of(horizon, values.p);
   const auto powers = stride.measured.topRows(kPowers).middleCols(1, plan.steps);
   gait.work = options.h * powers.cwiseAbs().sum();
   gait.cost_of_transport = gait.work / (gait.weight * plan.advance());
   const Eigen::Index half = plan.steps + 1;
   gait.solution = {(stride.q.leftCols(half) - values.q).cwiseAbs().maxCoeff(),
                    (stride.qdot.leftCols(half) - values.qdot).cwiseAbs().maxCoeff()};
-  std::vector<int> itself(static_cast<std::size_t>(simulator.model().dof()));
+  std::vector<int> itself(static_cast<std::size_t>(horizon.model().dof()));
   for (std::size_t i = 0; i < itself.size(); ++i) {
     itself[i] = static_cast<int>(i);
   }
-  gait.half = gap_to_start(stride, plan.steps, plan.advance(), mirror(simulator.model()));
+  gait.half = gap_to_start(stride, plan.steps, plan.advance(), mirror(horizon.model()));
   gait.whole = gap_to_start(stride, 2 * plan.steps, 2.0 * plan.advance(), itself);
   gait.load.resize(2, stride.measured.cols());
   gait.load.row(0) = stride.measured.row(kPowers);
   gait.load.row(1) = stride.measured.row(kPowers + kForceRows);
   gait.friction_use = friction_use(stride, gait.weight);
-  gait.slip = slip_of(stride, gait, simulator.model(), plan.steps);
+  gait.slip = slip_of(stride, gait, horizon.model(), plan.steps);
   return gait;
 }
 

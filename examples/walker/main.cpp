@@ -55,7 +55,7 @@ Stage solve(const Step& step, Arguments arguments, const std::vector<Stage>& ear
   }
   const TrajectoryProblem problem = walker_problem(arguments.plan, step.aim);
   TranscriptionOptions transcription = example::transcription_options(arguments.optimise);
-  transcription.q_guess = first_guess(arguments.plan, problem.simulator.model());
+  transcription.q_guess = first_guess(arguments.plan, problem.horizon.model());
   Stage stage;
   stage.program = transcribe(problem, transcription);
   stage.outcome = example::optimise(

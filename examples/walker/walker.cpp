@@ -79,17 +79,17 @@ SimulationOptions simulation_options(const Plan& plan, const Model& model) {
   return options;
 }
 
-Objective objective_of(const Plan& plan, Aim aim, const Simulator& simulator,
+Objective objective_of(const Plan& plan, Aim aim, const Horizon& horizon,
                        const Eigen::MatrixXd& guess) {
   if (aim == Aim::kFollowGuess) {
     Objective objective(tracking(guess.rightCols(plan.steps)));
     return objective.add(effort(0.1)).add(control_smoothness(1e-3));
   }
   std::vector<int> powers;
-  for (std::size_t i = 0; i < simulator.model().motors().size(); ++i) {
+  for (std::size_t i = 0; i < horizon.model().motors().size(); ++i) {
     powers.push_back(static_cast<int>(i));
   }
-  const double scale = 1.0 / (nominal_weight(simulator.model()) * plan.advance());
+  const double scale = 1.0 / (nominal_weight(horizon.model()) * plan.advance());
   const CostWeights& weights = aim == Aim::kSmoothedCost ? kWide : kNarrow;
   Objective objective(work(powers, weights.power_smoothing, scale));
   return objective.add(effort(weights.effort)).add(control_smoothness(weights.control_smoothness));
@@ -221,7 +221,7 @@ TrajectoryProblem walker_problem(const Plan& plan, Aim aim) {
   if (!plan.begin.empty()) {
     map->begin_at({plan.begin.at(0), plan.begin.at(1)});
   }
-  Simulator simulator(model, set, simulation_options(plan, model));
+  Horizon horizon(model, set, simulation_options(plan, model));
 
   std::vector<ConstraintPointer> constraints = contact_schedule(plan, model);
   constraints.push_back(mirrored_periodicity(model, plan.steps, plan.advance()));
@@ -231,9 +231,9 @@ TrajectoryProblem walker_problem(const Plan& plan, Aim aim) {
   controls.hold = plan.hold();
   controls.lower = Eigen::VectorXd::Constant(4, -1.0);
   controls.upper = Eigen::VectorXd::Constant(4, 1.0);
-  Objective objective = objective_of(plan, aim, simulator, guess);
-  const Eigen::VectorXd qdot0 = (guess.col(1) - guess.col(0)) / simulator.options().h;
-  return TrajectoryProblem{.simulator = std::move(simulator),
+  Objective objective = objective_of(plan, aim, horizon, guess);
+  const Eigen::VectorXd qdot0 = (guess.col(1) - guess.col(0)) / horizon.options().h;
+  return TrajectoryProblem{.horizon = std::move(horizon),
                            .map = std::move(map),
                            .objective = std::move(objective),
                            .constraints = std::move(constraints),

@@ -6,6 +6,8 @@
 
 #include "hbar/adjoint/stage/parameter_derivatives.h"
 #include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/geometry/surface_points.h"
 #include "hbar/core/model/model_builder.h"
@@ -100,19 +102,19 @@ Model grasp_model(bool contacts) {
 
 struct GraspWork::Workspace {
   explicit Workspace(const std::string& integrator)
-      : simulator(grasp_model(), parameters(grasp_model()), options(integrator, true)),
-        bare(simulator.model(), simulator.parameters(), options(integrator, false)),
+      : horizon(grasp_model(), parameters(grasp_model()), options(integrator, true)),
+        bare(horizon.model(), horizon.parameters(), options(integrator, false)),
         model_without(grasp_model(false)),
-        inputs(simulator.nominal_inputs()),
-        adjoint(simulator),
+        inputs(horizon.nominal_inputs()),
+        adjoint(horizon),
         objective(squared_variables()),
-        mechanism(nominal_mechanism<double>(simulator.model())),
+        mechanism(nominal_mechanism<double>(horizon.model())),
         mechanism_without(nominal_mechanism<double>(model_without)),
-        stage(simulator.model()),
+        stage(horizon.model()),
         stage_without(model_without),
-        g(simulator.model().dof()),
+        g(horizon.model().dof()),
         matrix(g.size(), g.size()) {
-    const Model& model = simulator.model();
+    const Model& model = horizon.model();
     // The fingers close within the first tenth of a second and hold on.
     for (int k = 0; k < kSteps; ++k) {
       const double closed = std::min(1.0, k * kStep / 0.1);
@@ -150,8 +152,8 @@ struct GraspWork::Workspace {
     return points[at - 1];
   }
 
-  Simulator simulator;
-  Simulator bare;
+  Horizon horizon;
+  Horizon bare;
   Model model_without;
   Inputs inputs;
   AdjointSweep adjoint;
@@ -172,13 +174,13 @@ GraspWork::GraspWork(const std::string& integrator)
   forward();
   Workspace& w = *work_;
   for (int s = 1; s < w.trajectory.timeline.stage_count(); ++s) {
-    w.points.emplace_back(w.simulator.model());
-    w.simulator.set_point(w.trajectory, s, w.points.back());
+    w.points.emplace_back(w.horizon.model());
+    w.horizon.set_point(w.trajectory, s, w.points.back());
   }
 }
 
 void GraspWork::forward() {
-  work_->trajectory = work_->simulator.rollout(work_->inputs).trajectory();
+  work_->trajectory = simulate(work_->horizon, work_->inputs).trajectory();
 }
 
 void GraspWork::forward_alone() {
@@ -225,7 +227,7 @@ void GraspWork::pull_back_without() {
 
 int GraspWork::steps() const { return kSteps; }
 int GraspWork::stages() const { return work_->trajectory.timeline.stage_count() - 1; }
-int GraspWork::parameter_count() const { return work_->simulator.parameters().size(); }
+int GraspWork::parameter_count() const { return work_->horizon.parameters().size(); }
 
 int GraspWork::newton_iterations() const {
   return benchmarks::newton_iterations(work_->trajectory);
@@ -235,7 +237,7 @@ int GraspWork::factorizations() const { return benchmarks::factorizations(work_-
 
 int GraspWork::declared_points() const {
   Eigen::Index count = 0;
-  const Model& model = work_->simulator.model();
+  const Model& model = work_->horizon.model();
   for (const Contact& contact : model.contacts()) {
     count += model.link(contact.link).body.contact_points.cols();
   }
@@ -244,9 +246,9 @@ int GraspWork::declared_points() const {
 
 namespace {
 
-std::vector<int> active_points(Simulator& simulator, const Trajectory& trajectory) {
+std::vector<int> active_points(const Horizon& horizon, const Trajectory& trajectory) {
   std::vector<int> counts;
-  for (const std::vector<ContactSummary>& step : simulator.contact_history(trajectory)) {
+  for (const std::vector<ContactSummary>& step : contact_history(horizon, trajectory)) {
     int count = 0;
     for (const ContactSummary& summary : step) {
       count += summary.active;
@@ -259,7 +261,7 @@ std::vector<int> active_points(Simulator& simulator, const Trajectory& trajector
 }  // namespace
 
 double GraspWork::mean_active_points() const {
-  const std::vector<int> counts = active_points(work_->simulator, work_->trajectory);
+  const std::vector<int> counts = active_points(work_->horizon, work_->trajectory);
   double sum = 0.0;
   for (const int count : counts) {
     sum += count;
@@ -268,12 +270,12 @@ double GraspWork::mean_active_points() const {
 }
 
 int GraspWork::most_active_points() const {
-  const std::vector<int> counts = active_points(work_->simulator, work_->trajectory);
+  const std::vector<int> counts = active_points(work_->horizon, work_->trajectory);
   return *std::max_element(counts.begin(), counts.end());
 }
 
 double GraspWork::slip() const {
-  const int z = work_->simulator.model().dof() - 4;
+  const int z = work_->horizon.model().dof() - 4;
   double lowest = 0.0;
   for (int k = 0; k <= work_->trajectory.step_count(); ++k) {
     lowest = std::min(lowest, work_->trajectory.q_at_step(k)[z]);

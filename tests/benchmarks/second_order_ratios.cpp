@@ -8,6 +8,7 @@
 
 #include "hbar/adjoint/derivatives/second_order.h"
 #include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "tests/benchmarks/hinges.h"
 #include "tests/support/random.h"
 
@@ -28,15 +29,15 @@ double fastest_ms(int repetitions, const Work& work) {
   return best;
 }
 
-void write_row(const char* name, int parameters, Simulator& simulator, const Inputs& inputs,
+void write_row(const char* name, int parameters, const Horizon& horizon, const Inputs& inputs,
                int repetitions, std::ostream& out) {
-  const Trajectory trajectory = simulator.rollout(inputs).trajectory();
+  const Trajectory trajectory = simulate(horizon, inputs).trajectory();
   Objective objective(squared_velocity());
   objective.add(effort());
-  AdjointSweep adjoint(simulator);
+  AdjointSweep adjoint(horizon);
   const double gradient =
       fastest_ms(repetitions, [&] { static_cast<void>(adjoint.gradient(trajectory, objective)); });
-  HessianProduct hessian(simulator, objective);
+  HessianProduct hessian(horizon, objective);
   const double point =
       fastest_ms(repetitions, [&] { static_cast<void>(hessian.set_point(trajectory)); });
   Random random(3);
@@ -60,11 +61,11 @@ void write_second_order_ratios(int repetitions, std::ostream& out) {
       Model model = build_model(hinges);
       ParameterSet set = parameters ? ParameterSet::all(model) : ParameterSet();
       const int count = set.size();
-      Simulator simulator(std::move(model), std::move(set),
-                          {.integrator = "bdf2", .h = 0.005, .steps = 200});
-      Inputs inputs = simulator.nominal_inputs();
+      Horizon horizon(std::move(model), std::move(set),
+                      {.integrator = "bdf2", .h = 0.005, .steps = 200});
+      Inputs inputs = horizon.nominal_inputs();
       inputs.q0 = Random(2).vector(inputs.q0.size(), 0.3);
-      write_row(hinges.name.c_str(), count, simulator, inputs, repetitions, out);
+      write_row(hinges.name.c_str(), count, horizon, inputs, repetitions, out);
     }
   }
 }

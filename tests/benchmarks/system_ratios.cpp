@@ -10,6 +10,7 @@
 
 #include "hbar/adjoint/derivatives/assembled_adjoint.h"
 #include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/solvers/linear/block_substitution.h"
 #include "tests/benchmarks/hinges.h"
 #include "tests/support/random.h"
@@ -33,7 +34,7 @@ double fastest(int repetitions, const Work& work) {
 }
 
 struct Motion {
-  Simulator simulator;
+  Horizon horizon;
   Trajectory trajectory;
 };
 
@@ -41,12 +42,12 @@ struct Motion {
 Motion swinging_chain(int n, const std::string& integrator, int steps) {
   Model model = build_model(serial_chain(n));
   ParameterSet parameters = ParameterSet::all(model);
-  Simulator simulator(std::move(model), std::move(parameters),
-                      {.integrator = integrator, .h = 0.005, .steps = steps});
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon(std::move(model), std::move(parameters),
+                  {.integrator = integrator, .h = 0.005, .steps = steps});
+  Inputs inputs = horizon.nominal_inputs();
   inputs.q0 = Random(2).vector(n, 1.0 / std::sqrt(static_cast<double>(n)));
-  Trajectory trajectory = simulator.rollout(inputs).trajectory();
-  return {std::move(simulator), std::move(trajectory)};
+  Trajectory trajectory = simulate(horizon, inputs).trajectory();
+  return {std::move(horizon), std::move(trajectory)};
 }
 
 void write_streaming(int repetitions, std::ostream& out) {
@@ -58,7 +59,7 @@ void write_streaming(int repetitions, std::ostream& out) {
       // Far more than any cache holds.
       const int steps = 64 * 16384 / (n * n);
       Motion motion = swinging_chain(n, integrator, steps);
-      Linearizer linearizer(motion.simulator);
+      Linearizer linearizer(motion.horizon);
       const Linearization& system = linearizer.linearize(motion.trajectory);
       const solvers::SparseMatrix& H = system.H.matrix();
       solvers::BlockSubstitution solver(system.block_sizes);
@@ -90,8 +91,8 @@ void write_growth(int repetitions, std::ostream& out) {
   for (const int steps : {100, 1000, 10000, 100000}) {
     Motion motion = swinging_chain(7, "bdf2", steps);
     const Objective objective(squared_variables());
-    AssembledAdjoint adjoint(motion.simulator);
-    Linearizer linearizer(motion.simulator);
+    AssembledAdjoint adjoint(motion.horizon);
+    Linearizer linearizer(motion.horizon);
     const auto gradient = [&] {
       if (!adjoint.gradient(motion.trajectory, objective).q0.allFinite()) {
         throw NumericalFailure("gradient not finite");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/random.h"
 
@@ -88,10 +89,10 @@ RolloutWork::RolloutWork(const HingeModel& hinges, const std::string& integrator
 RolloutWork::RolloutWork(const HingeModel& hinges, const Model& model,
                          const std::string& integrator, int parameters)
     : mujoco_(hinges, kStep),
-      simulator_(model, first_parameters(model, parameters), simulation_options(integrator, true)),
+      horizon_(model, first_parameters(model, parameters), simulation_options(integrator, true)),
       bare_(model, first_parameters(model, parameters), simulation_options(integrator, false)),
-      inputs_(simulator_.nominal_inputs()),
-      adjoint_(simulator_),
+      inputs_(horizon_.nominal_inputs()),
+      adjoint_(horizon_),
       objective_(squared_variables()) {
   Random random(2);
   // Chains of any length are bent alike at the tip: angles add up as a random walk.
@@ -104,7 +105,7 @@ RolloutWork::RolloutWork(const HingeModel& hinges, const Model& model,
   forward();
 }
 
-void RolloutWork::forward() { trajectory_ = simulator_.rollout(inputs_).trajectory(); }
+void RolloutWork::forward() { trajectory_ = simulate(horizon_, inputs_).trajectory(); }
 
 void RolloutWork::forward_alone() {
   const Rollout rollout = bare_.rollout(inputs_);

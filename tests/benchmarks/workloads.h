@@ -54,7 +54,7 @@ class RolloutWork {
   void mujoco_rollout();           ///< the same simulation by mj_step
   void mujoco_rollout_with_A_B();  ///< the same, with mjd_transitionFD at every step
 
-  [[nodiscard]] int parameter_count() const { return simulator_.parameters().size(); }
+  [[nodiscard]] int parameter_count() const { return horizon_.parameters().size(); }
   [[nodiscard]] int newton_iterations() const;  ///< of the last trajectory, all stages
   [[nodiscard]] int factorizations() const;     ///< of the last trajectory, all stages
   [[nodiscard]] int refactorized() const { return adjoint_.refactorized(); }
@@ -64,8 +64,8 @@ class RolloutWork {
               int parameters);
 
   MujocoModel mujoco_;
-  Simulator simulator_;
-  Simulator bare_;
+  Horizon horizon_;
+  Horizon bare_;
   Inputs inputs_;
   AdjointSweep adjoint_;
   Objective objective_;

@@ -3,6 +3,8 @@
 
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/model/model_builder.h"
 #include "hbar/core/scene/build_model.h"
 #include "hbar/core/scene/read_xml.h"
@@ -20,27 +22,27 @@
 
 namespace {
 
-double final_angle_squared(hbar::Simulator& simulator, const hbar::Inputs& inputs) {
-  const hbar::Rollout rollout = simulator.rollout(inputs);
-  const double angle = simulator.values(rollout.trajectory()).q.rightCols(1)(0);
+double final_angle_squared(const hbar::Horizon& horizon, const hbar::Inputs& inputs) {
+  const hbar::Rollout rollout = simulate(horizon, inputs);
+  const double angle = read_values(horizon, rollout.trajectory()).q.rightCols(1)(0);
   return 0.5 * angle * angle;
 }
 
 bool gradient_is_right(const hbar::Model& model) {
-  hbar::Simulator simulator(model, hbar::ParameterSet::all(model),
-                            {.integrator = "bdf2", .h = 0.01, .steps = 20});
-  hbar::Inputs inputs = simulator.nominal_inputs();
+  hbar::Horizon horizon(model, hbar::ParameterSet::all(model),
+                        {.integrator = "bdf2", .h = 0.01, .steps = 20});
+  hbar::Inputs inputs = horizon.nominal_inputs();
   inputs.q0(0) = 0.3;
 
   const hbar::Objective objective(hbar::squared_final_position());
-  const hbar::Rollout rollout = simulator.rollout(inputs);
-  const double slope = hbar::gradient(simulator, rollout.trajectory(), objective).q0(0);
+  const hbar::Rollout rollout = simulate(horizon, inputs);
+  const double slope = hbar::gradient(horizon, rollout.trajectory(), objective).q0(0);
 
   const double step = 1e-5;
   inputs.q0(0) = 0.3 + step;
-  const double above = final_angle_squared(simulator, inputs);
+  const double above = final_angle_squared(horizon, inputs);
   inputs.q0(0) = 0.3 - step;
-  const double below = final_angle_squared(simulator, inputs);
+  const double below = final_angle_squared(horizon, inputs);
   const double difference = (above - below) / (2.0 * step);
   std::printf("stranger: gradient %.12g, central difference %.12g\n", slope, difference);
   return std::abs(slope - difference) < 1e-8;

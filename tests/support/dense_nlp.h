@@ -68,10 +68,10 @@ namespace hbar::testing {
                                .cwiseProduct(variables.scale.cwiseMin(1.0));
 }
 
-/// A row for every number of a simulator's trajectories, which is that number, in the order of
+/// A row for every number of a horizon's trajectories, which is that number, in the order of
 /// all_places.
-[[nodiscard]] inline ConstraintPointer every_number(const Simulator& simulator) {
-  const std::vector<ValuePlace> all = all_places(value_shape(simulator));
+[[nodiscard]] inline ConstraintPointer every_number(const Horizon& horizon) {
+  const std::vector<ValuePlace> all = all_places(value_shape(horizon));
   const auto count = static_cast<Eigen::Index>(all.size());
   ConstraintRows rows{
       {}, Eigen::VectorXd::Constant(count, -1e9), Eigen::VectorXd::Constant(count, 1e9)};

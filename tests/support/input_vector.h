@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
 
@@ -33,14 +35,14 @@ struct InputClass {
   std::vector<Eigen::Index> entries;  ///< in the flattened vector
 };
 
-/// Every class that the simulator's inputs have entries of.
-[[nodiscard]] inline std::vector<InputClass> input_classes(const Simulator& simulator,
+/// Every class that the horizon's inputs have entries of.
+[[nodiscard]] inline std::vector<InputClass> input_classes(const Horizon& horizon,
                                                            const Inputs& inputs) {
   std::vector<InputClass> classes;
   for (const ParameterKind kind : parameter_kinds()) {
     InputClass of_kind{std::string(kind_name(kind)), {}};
-    for (int i = 0; i < simulator.parameters().size(); ++i) {
-      if (simulator.parameters()[i].kind == kind) {
+    for (int i = 0; i < horizon.parameters().size(); ++i) {
+      if (horizon.parameters()[i].kind == kind) {
         of_kind.entries.push_back(i);
       }
     }
@@ -62,21 +64,21 @@ struct InputClass {
 }
 
 /// Ψ of a simulation.
-[[nodiscard]] inline double objective_of(Simulator& simulator, const Objective& objective,
+[[nodiscard]] inline double objective_of(const Horizon& horizon, const Objective& objective,
                                          const Inputs& inputs) {
-  const Trajectory trajectory = simulator.rollout(inputs).trajectory();
-  return objective.value(simulator.values(trajectory));
+  const Trajectory trajectory = simulate(horizon, inputs).trajectory();
+  return objective.value(read_values(horizon, trajectory));
 }
 
 /// dΨ/dx_i by central differences, extrapolated once. Steps are relative where |x_i| > 1.
-[[nodiscard]] inline double difference_quotient(Simulator& simulator, const Objective& objective,
+[[nodiscard]] inline double difference_quotient(const Horizon& horizon, const Objective& objective,
                                                 const Inputs& inputs, Eigen::Index i, double step) {
   const Eigen::VectorXd x = flatten(inputs);
   const double scale = std::max(1.0, std::abs(x[i]));
   const auto along = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
     Eigen::VectorXd at = x;
     at[i] += scale * e[0];
-    const double psi = objective_of(simulator, objective, unflatten(at, inputs));
+    const double psi = objective_of(horizon, objective, unflatten(at, inputs));
     return Eigen::VectorXd::Constant(1, psi);
   };
   return differences(along, Eigen::VectorXd::Zero(1), step)(0, 0) / scale;
@@ -84,7 +86,7 @@ struct InputClass {
 
 /// Gap of a gradient's entries of one class to central differences, relative to the largest entry:
 /// the bottom of the V that it draws over the given steps.
-[[nodiscard]] inline double gap_to_differences(Simulator& simulator, const Objective& objective,
+[[nodiscard]] inline double gap_to_differences(const Horizon& horizon, const Objective& objective,
                                                const Inputs& inputs, const Gradient& gradient,
                                                const InputClass& entries,
                                                const std::vector<double>& steps) {
@@ -94,7 +96,7 @@ struct InputClass {
     Eigen::VectorXd quotients(exact.size());
     for (Eigen::Index k = 0; k < exact.size(); ++k) {
       const Eigen::Index i = entries.entries[static_cast<std::size_t>(k)];
-      quotients[k] = difference_quotient(simulator, objective, inputs, i, step);
+      quotients[k] = difference_quotient(horizon, objective, inputs, i, step);
     }
     smallest = std::min(smallest, relative_gap(exact, quotients));
   }
@@ -104,7 +106,7 @@ struct InputClass {
 /// Slope of the Taylor remainder along a random direction within one class: of log |f(ε) − f(0) −
 /// ε f'(0)| over log ε, over the two smallest decades in which rounding is below a hundredth of it.
 /// NaN if there are none.
-[[nodiscard]] inline double taylor_slope_in(Simulator& simulator, const Objective& objective,
+[[nodiscard]] inline double taylor_slope_in(const Horizon& horizon, const Objective& objective,
                                             const Inputs& inputs, const Gradient& gradient,
                                             const InputClass& entries, double largest_e) {
   Random random(3);
@@ -114,7 +116,7 @@ struct InputClass {
   const double slope = flatten(gradient).dot(direction);
   std::vector<double> remainders;
   for (double e = largest_e; e > 1e-7; e /= 10.0) {
-    const double psi = objective_of(simulator, objective, unflatten(x + e * direction, inputs));
+    const double psi = objective_of(horizon, objective, unflatten(x + e * direction, inputs));
     const double remainder = std::abs(psi - gradient.value - e * slope);
     if (remainder < 100.0 * 1e-14 * std::abs(gradient.value)) {
       break;

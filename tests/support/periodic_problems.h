@@ -43,8 +43,8 @@ namespace hbar::testing {
   options.newton.rtol = 1e-13;
   Objective objective(squared_variables(0.5));
   objective.add(squared_velocity(0.2)).add(effort(0.1)).add(squared_final_position(0.7));
-  Problem problem{Simulator(std::move(model), std::move(set), options), objective, {}};
-  problem.inputs = problem.simulator.nominal_inputs();
+  Problem problem{Horizon(std::move(model), std::move(set), options), objective, {}};
+  problem.inputs = problem.horizon.nominal_inputs();
   for (Eigen::Index k = 0; k < steps; ++k) {
     const double angle =
         2.0 * std::numbers::pi * static_cast<double>(k + 1) / static_cast<double>(steps);

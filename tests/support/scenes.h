@@ -3,7 +3,7 @@
 #include <string>
 
 #include "hbar/adjoint/terms/objective_terms.h"
-#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/horizon.h"
 #include "hbar/core/model/model_builder.h"
 
 namespace hbar::testing {
@@ -115,8 +115,8 @@ inline const Eigen::Vector3d kGravity{0.0, 0.0, -9.81};
   return options;
 }
 
-/// A simulator with all parameters of a model.
-inline Simulator make_simulator(const Model& model, const SimulationOptions& options) {
+/// A horizon with all parameters of a model.
+inline Horizon make_horizon(const Model& model, const SimulationOptions& options) {
   return {model, ParameterSet::all(model), options};
 }
 

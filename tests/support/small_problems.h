@@ -146,9 +146,9 @@ struct ContactChoice {
   options.newton.rtol = 1e-13;
   Objective objective(squared_variables(0.5));
   objective.add(squared_final_position(0.3)).add(squared_velocity(0.2)).add(effort(0.1));
-  Problem problem{Simulator(std::move(model), std::move(set), options), objective, {}};
-  problem.inputs = problem.simulator.nominal_inputs();
-  const int n = problem.simulator.model().dof();
+  Problem problem{Horizon(std::move(model), std::move(set), options), objective, {}};
+  problem.inputs = problem.horizon.nominal_inputs();
+  const int n = problem.horizon.model().dof();
   for (int i = 0; i < n; ++i) {
     problem.inputs.q0[i] = 0.3 * std::sin(1.0 + i);
     problem.inputs.qdot0[i] = 0.8 * std::cos(0.5 + 2.0 * i);
@@ -158,8 +158,8 @@ struct ContactChoice {
       problem.inputs.u(i, k) = 0.4 * std::sin(0.3 * static_cast<double>(k + 2 * i));
     }
   }
-  for (int i = 0; i < problem.simulator.parameters().size(); ++i) {
-    const ParameterKind kind = problem.simulator.parameters()[i].kind;
+  for (int i = 0; i < problem.horizon.parameters().size(); ++i) {
+    const ParameterKind kind = problem.horizon.parameters()[i].kind;
     if (kind == ParameterKind::kJointTransform || kind == ParameterKind::kBodyTransform) {
       problem.inputs.p[i] = 0.05 * std::sin(1.7 * i);
     }

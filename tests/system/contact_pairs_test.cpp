@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/rotation.h"
 #include "tests/support/numerics.h"
 #include "tests/system/contact_scenes.h"
@@ -113,7 +114,7 @@ TEST_P(PairOfEveryIntegrator, StacksTwoBoxes) {
   q0[8] = 0.155;  // 3 mm above the lower one
   q0[11] = 0.2;   // turned
   ContactRun run(model, GetParam(), 0.005, 600, q0, VectorXd::Zero(12));
-  const auto rest = run.simulator.contact_history(run.trajectory).back();
+  const auto rest = contact_history(run.horizon, run.trajectory).back();
   EXPECT_EQ(rest[0].active, 4);
   EXPECT_EQ(rest[1].active, 4);
   EXPECT_NEAR(rest[0].normal_force, 13.0 * 9.81, 1e-6 * 13.0 * 9.81);
@@ -158,7 +159,7 @@ TEST_P(PairOfEveryIntegrator, DoesNotDependOnAMotionThatBothShare) {
       qdot0[1] += speed;
       ContactRun moving(model, GetParam(), 0.002, 150, q0, qdot0);
       int touching = 0;
-      for (const auto& step : moving.simulator.contact_history(moving.trajectory)) {
+      for (const auto& step : contact_history(moving.horizon, moving.trajectory)) {
         touching += step[0].active > 0 ? 1 : 0;
       }
       EXPECT_GT(touching, 10);

@@ -35,12 +35,12 @@ TEST_P(ContactOfEveryIntegrator, LetsABoxRestAtTheDepthThatCarriesIt) {
   const Model model = body_on_ground(kBox, k, kDown);
   const ParameterSet set = ParameterSet::named(model, {"body.body.contact_scale"});
   for (const double s : {1.0, 2.5}) {
-    Simulator simulator = testing::contact_simulator(model, GetParam(), 0.01, 300, set);
-    Inputs inputs = simulator.nominal_inputs();
+    Horizon horizon = testing::contact_horizon(model, GetParam(), 0.01, 300, set);
+    Inputs inputs = horizon.nominal_inputs();
     inputs.p[0] = s;
     inputs.q0[2] = 0.5 * kBoxHeight + 0.004;  // falls
-    const Trajectory trajectory = simulator.rollout(inputs).trajectory();
-    const auto history = simulator.contact_history(trajectory);
+    const Trajectory trajectory = simulate(horizon, inputs).trajectory();
+    const auto history = contact_history(horizon, trajectory);
     const double depth = kBoxMass * 9.81 / (k.kn * s * 4.0);
     EXPECT_EQ(history.front()[0].active, 0);
     EXPECT_EQ(history.back()[0].active, 4);
@@ -180,7 +180,7 @@ TEST_P(ContactOfEveryIntegrator, ConvergesWithItsOrderAwayFromEvents) {
     ContactRun run(model, GetParam(), 0.2 / n, n,
                    six({0.0, 0.0, resting_height(k, 9.81) - 1e-3}, {0.002, -0.001, 0.1}),
                    six({2.0, 0.5, 0.0}, {0.0, 0.0, 0.5}));
-    for (const auto& step : run.simulator.contact_history(run.trajectory)) {
+    for (const auto& step : contact_history(run.horizon, run.trajectory)) {
       EXPECT_EQ(step[0].active, 4);
       EXPECT_EQ(step[0].sticking, 0);
     }

@@ -39,9 +39,8 @@ inline int add_free_body(ModelBuilder& builder, const std::string& name, const S
   return builder.build();
 }
 
-[[nodiscard]] inline Simulator contact_simulator(const Model& model, const std::string& integrator,
-                                                 double h, int steps,
-                                                 const ParameterSet& set = {}) {
+[[nodiscard]] inline Horizon contact_horizon(const Model& model, const std::string& integrator,
+                                             double h, int steps, const ParameterSet& set = {}) {
   SimulationOptions options;
   options.integrator = integrator;
   options.h = h;
@@ -53,11 +52,11 @@ inline int add_free_body(ModelBuilder& builder, const std::string& name, const S
 struct ContactRun {
   ContactRun(const Model& model, const std::string& integrator, double h, int steps,
              const Eigen::VectorXd& q0, const Eigen::VectorXd& qdot0)
-      : simulator(contact_simulator(model, integrator, h, steps)) {
-    Inputs inputs = simulator.nominal_inputs();
+      : horizon(contact_horizon(model, integrator, h, steps)) {
+    Inputs inputs = horizon.nominal_inputs();
     inputs.q0 = q0;
     inputs.qdot0 = qdot0;
-    trajectory = simulator.rollout(inputs).trajectory();
+    trajectory = simulate(horizon, inputs).trajectory();
   }
 
   [[nodiscard]] Eigen::VectorXd q_end() const {
@@ -67,7 +66,7 @@ struct ContactRun {
     return trajectory.qdot_at_step(trajectory.step_count());
   }
 
-  Simulator simulator;
+  Horizon horizon;
   Trajectory trajectory;
 };
 

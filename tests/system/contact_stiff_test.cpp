@@ -7,6 +7,8 @@
 
 #include "hbar/adjoint/derivatives/check_gradient.h"
 #include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/base/rotation.h"
 #include "hbar/core/scene/build_model.h"
@@ -49,10 +51,10 @@ Problem drop(const std::string& integrator, const Stiff& stiff) {
   builder.add_contact({.link = box, .surface = Plane{}, .coefficients = coefficients(stiff)});
   const Model model = builder.build();
   Problem problem{
-      testing::contact_simulator(model, integrator, kStep, kSteps, ParameterSet::all(model)),
+      testing::contact_horizon(model, integrator, kStep, kSteps, ParameterSet::all(model)),
       Objective(squared_variables()),
       {}};
-  problem.inputs = problem.simulator.nominal_inputs();
+  problem.inputs = problem.horizon.nominal_inputs();
   problem.inputs.q0 << 0.0, 0.0, 3.0, 0.2, -0.15, 0.3;
   problem.inputs.qdot0 << 60.0, 20.0, -30.0, 1.0, 2.0, -3.0;
   return problem;
@@ -86,10 +88,10 @@ Problem press(const std::string& integrator, const Stiff& stiff) {
   builder.add_end_effector({.name = "tip", .link = lower, .position = {4.5, 0.0, 0.0}});
   const Model model = builder.build();
   Problem problem{
-      testing::contact_simulator(model, integrator, kStep, kSteps, ParameterSet::all(model)),
+      testing::contact_horizon(model, integrator, kStep, kSteps, ParameterSet::all(model)),
       Objective(squared_variables()),
       {}};
-  problem.inputs = problem.simulator.nominal_inputs();
+  problem.inputs = problem.horizon.nominal_inputs();
   problem.inputs.q0 << 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.7;
   for (int k = 0; k < kSteps; ++k) {
     problem.inputs.u.col(k) << 0.55 * std::min(k / 50.0, 1.0), 0.7 + 0.25 * std::sin(0.05 * k);
@@ -120,7 +122,7 @@ TEST_P(StiffContactOfEveryIntegrator, ConvergesInAFewIterationsAlmostWithoutHalv
         for (const int grid : {2, 6}) {
           const Stiff stiff{kt, damping, grid};
           Problem problem = pressed ? press(GetParam(), stiff) : drop(GetParam(), stiff);
-          const Rollout rollout = problem.simulator.rollout(problem.inputs);
+          const Rollout rollout = simulate(problem.horizon, problem.inputs);
           ASSERT_TRUE(rollout.converged()) << rollout.report().message;
           const Trajectory& trajectory = rollout.trajectory();
           double iterations = 0.0;
@@ -132,7 +134,7 @@ TEST_P(StiffContactOfEveryIntegrator, ConvergesInAFewIterationsAlmostWithoutHalv
           EXPECT_LT(iterations / trajectory.timeline.last_stage(), 6.0) << pressed << ' ' << kt;
           EXPECT_LE(halved_steps(trajectory, integrator), 1) << pressed << ' ' << kt;
           int touching = 0;
-          for (const auto& step : problem.simulator.contact_history(trajectory)) {
+          for (const auto& step : contact_history(problem.horizon, trajectory)) {
             touching += step.back().active > 0 ? 1 : 0;
           }
           EXPECT_GT(touching, pressed ? 150 : 5) << pressed << ' ' << kt;
@@ -145,7 +147,7 @@ TEST_P(StiffContactOfEveryIntegrator, ConvergesInAFewIterationsAlmostWithoutHalv
 TEST(StiffContact, HasAGradientThroughAHalvedStep) {
   const Stiff stiff{.kt = 1e4, .damping = 1e3, .grid = 2};
   Problem problem = press("bdf1", stiff);
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
   ASSERT_EQ(halved_steps(trajectory, find_integrator("bdf1")), 1);
   const GradientCheckReport report = check_gradient(problem, {.directions = 1});
   EXPECT_TRUE(report.passed()) << report.table();
@@ -157,12 +159,12 @@ INSTANTIATE_TEST_SUITE_P(All, StiffContactOfEveryIntegrator,
 
 TEST(StiffContact, SaysWhichPairIsDeepestWhereAStepFails) {
   Problem problem = drop("bdf1", {});
-  SimulationOptions options = problem.simulator.options();
+  SimulationOptions options = problem.horizon.options();
   options.newton.max_iter = 2;
   options.max_halvings = 0;
-  Simulator simulator(problem.simulator.model(), problem.simulator.parameters(), options);
+  Horizon horizon(problem.horizon.model(), problem.horizon.parameters(), options);
   problem.inputs.q0[2] = 0.9;  // a corner is in the ground from the start
-  const Rollout rollout = simulator.rollout(problem.inputs);
+  const Rollout rollout = simulate(horizon, problem.inputs);
   ASSERT_EQ(rollout.report().status, RolloutStatus::kStepFailed);
   const std::string& message = rollout.report().message;
   EXPECT_NE(message.find(concat("stopped at step ", rollout.report().steps_done + 1, " of")),
@@ -208,13 +210,13 @@ TEST(StiffContact, NeverTakesARootFarFromThePrediction) {
     options.integrator = integrator;
     options.h = kStep;
     options.steps = kSteps;
-    Simulator simulator(model, {}, options);
-    Inputs inputs = simulator.nominal_inputs();
+    Horizon horizon(model, {}, options);
+    Inputs inputs = horizon.nominal_inputs();
     inputs.q0 << 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.7;
     for (int k = 0; k < kSteps; ++k) {
       inputs.u.col(k) << 0.5 + 0.3 * std::sin(0.05 * k), 0.5 * std::cos(0.07 * k);
     }
-    const Trajectory trajectory = simulator.rollout(inputs).trajectory();
+    const Trajectory trajectory = simulate(horizon, inputs).trajectory();
     // The joints turn at some 100 rad/s at most; through the box it would be 1e4 and more.
     EXPECT_LT(trajectory.qdot.cwiseAbs().maxCoeff(), 1000.0) << integrator;
   }

@@ -8,6 +8,7 @@
 #include "hbar/adjoint/programs/load_problem.h"
 #include "hbar/adjoint/systems/periodic.h"
 #include "hbar/adjoint/systems/trajectory_system.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/scene/read_xml.h"
 #include "hbar/core/scene/vocabulary.h"
 #include "hbar/solvers/linear/accuracy.h"
@@ -74,8 +75,8 @@ class EverySolverOnEverySystem : public ::testing::TestWithParam<SystemCase> {};
 TEST_P(EverySolverOnEverySystem, HasABackwardErrorAtRounding) {
   const SystemCase& c = GetParam();
   Problem problem = problem_of(c);
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-  const TrajectorySystem system = assemble_system(c.kind, problem.simulator, trajectory);
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  const TrajectorySystem system = assemble_system(c.kind, problem.horizon, trajectory);
   const std::vector<std::string> names = solvers_for(system.options.structure);
   EXPECT_GE(names.size(), 4U);
   for (const std::string& name : names) {
@@ -95,7 +96,7 @@ TEST_P(EverySolverOnEverySystem, HasABackwardErrorAtRounding) {
               backward_error_bound(name))
         << name;
     if (name == "cholmod_ldlt" && c.kind == SystemKind::kKkt) {
-      const int multipliers = problem.simulator.model().dof() * trajectory.timeline.last_stage();
+      const int multipliers = problem.horizon.model().dof() * trajectory.timeline.last_stage();
       EXPECT_EQ(solver->factor_info().inertia->negative, multipliers);
     }
   }
@@ -110,14 +111,13 @@ INSTANTIATE_TEST_SUITE_P(All, EverySolverOnEverySystem, ::testing::ValuesIn(ever
 TEST(EverySolver, GivesTheSweepsGradient) {
   for (const bool contact : {false, true}) {
     Problem problem = contact ? contact_problem("bdf2", 0.01, 40) : small_problem("bdf2");
-    const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-    const Eigen::VectorXd swept =
-        flatten(gradient(problem.simulator, trajectory, problem.objective));
+    const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+    const Eigen::VectorXd swept = flatten(gradient(problem.horizon, trajectory, problem.objective));
     for (const std::string& name : solvers_for(Structure::kBlockTriangular)) {
       if (name == "cholmod_normal") {
         continue;  // below: never for a gradient
       }
-      AssembledAdjoint assembled(problem.simulator, solvers::solver_factory(name));
+      AssembledAdjoint assembled(problem.horizon, solvers::solver_factory(name));
       const Eigen::VectorXd ours = flatten(assembled.gradient(trajectory, problem.objective));
       EXPECT_LT((ours - swept).norm(), 1e-9 * swept.norm()) << name;
     }
@@ -126,14 +126,14 @@ TEST(EverySolver, GivesTheSweepsGradient) {
 
 TEST(EverySolver, GivesThePeriodicGradientOfKlu) {
   Problem problem = driven_pendulum("bdf2", 30);
-  PeriodicSolver by_klu(problem.simulator);
+  PeriodicSolver by_klu(problem.horizon);
   const PeriodicOrbit orbit = by_klu.solve(problem.inputs);
   const Eigen::VectorXd expected = flatten(by_klu.gradient(orbit.trajectory, problem.objective));
   for (const std::string& name : solvers_for(Structure::kPeriodic)) {
     if (name == "cholmod_normal") {
       continue;
     }
-    PeriodicSolver solver(problem.simulator, {.solver = solvers::solver_factory(name)});
+    PeriodicSolver solver(problem.horizon, {.solver = solvers::solver_factory(name)});
     const Trajectory found = solver.solve(problem.inputs).trajectory;
     EXPECT_LT((found.q - orbit.trajectory.q).norm(), 1e-9 * found.q.norm()) << name;
     const Eigen::VectorXd ours = flatten(solver.gradient(found, problem.objective));
@@ -147,11 +147,11 @@ TEST(EverySolver, AnalysesOnceInAHundredIterationsOfADescent) {
       continue;
     }
     Problem problem = driven_pendulum("bdf1", 10);
-    AssembledAdjoint assembled(problem.simulator, solvers::solver_factory(name));
+    AssembledAdjoint assembled(problem.horizon, solvers::solver_factory(name));
     double first = 0.0;
     double last = 0.0;
     for (int i = 0; i < 100; ++i) {
-      const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+      const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
       const Gradient g = assembled.gradient(trajectory, problem.objective);
       problem.inputs.u -= 0.02 * g.u;
       (i == 0 ? first : last) = g.value;
@@ -165,9 +165,9 @@ TEST(EverySolver, AnalysesOnceInAHundredIterationsOfADescent) {
 TEST(NormalEquations, LoseDigitsWithTheLengthOfTheTrajectory) {
   const auto forward_error = [](int steps) {
     Problem problem = driven_pendulum("bdf2", steps);
-    const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+    const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
     const TrajectorySystem system =
-        assemble_system(SystemKind::kAdjoint, problem.simulator, trajectory);
+        assemble_system(SystemKind::kAdjoint, problem.horizon, trajectory);
     const auto reference = solvers::make_solver("klu", system.options, system.A);
     reference->analyze(system.A);
     reference->factorize(system.A);

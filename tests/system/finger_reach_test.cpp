@@ -106,7 +106,7 @@ TEST(FingerReach, ReachesItsTargetsWithTheLeastEffort) {
             0.01 * finger_length(reach, outcome.optimised.result.x));
   EXPECT_LT(outcome.optimised.result.objective, outcome.start_objective);
   EXPECT_LE(outcome.values.u.cwiseAbs().maxCoeff(), 1.0 + 1e-6);
-  const Model& model = problem.problem().simulator.model();
+  const Model& model = problem.problem().horizon.model();
   for (int i = 0; i < 4; ++i) {  // at every step, between the samples too
     const JointLimits& limits = model.link(i).joint.limits.value();
     EXPECT_GE(outcome.values.q.row(i).minCoeff(), limits.lower) << i;
@@ -117,7 +117,7 @@ TEST(FingerReach, ReachesItsTargetsWithTheLeastEffort) {
   EXPECT_NE(json.find("\"converged\": true"), std::string::npos);
   EXPECT_NE(summary(reach, outcome).find("target 4"), std::string::npos);
   const std::string csv =
-      study::trajectory_csv(study::trajectory_names(problem.problem().simulator), outcome.values);
+      study::trajectory_csv(study::trajectory_names(problem.problem().horizon), outcome.values);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), kSteps + 2);
   const std::string rows = example::iterations_csv(outcome.optimised.iterations);
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), outcome.optimised.result.iterations + 2);

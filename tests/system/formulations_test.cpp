@@ -52,7 +52,7 @@ TrajectoryProblem reach_problem() {
   options.newton.rtol = 1e-13;
   options.restarts = segment_starts(kReachSteps, kReachSegments);
   options.measurements = {MotorPower{"shoulder power", 0}};
-  TrajectoryProblem out{.simulator = Simulator(model, set, options),
+  TrajectoryProblem out{.horizon = Horizon(model, set, options),
                         .map = std::make_shared<IdentityDesignMap>(set),
                         .objective = Objective(effort(0.1)),
                         .constraints = {},

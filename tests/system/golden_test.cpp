@@ -12,6 +12,8 @@
 
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/scene/build_model.h"
 #include "hbar/core/scene/read_xml.h"
 
@@ -62,8 +64,8 @@ class GoldenRun : public ::testing::TestWithParam<std::string> {
     options.h = golden_.at("h");
     options.steps = golden_.at("steps");
     options.newton.tol = golden_.at("newton_tol");
-    simulator_ = std::make_unique<Simulator>(model, ParameterSet::masked(model), options);
-    inputs_ = simulator_->nominal_inputs();
+    horizon_ = std::make_unique<Horizon>(model, ParameterSet::masked(model), options);
+    inputs_ = horizon_->nominal_inputs();
     inputs_.q0 = vector_of(golden_.at("q0"));
     inputs_.qdot0 = vector_of(golden_.at("qdot0"));
     const double amplitude = golden_.at("control").at("amp");
@@ -80,7 +82,7 @@ class GoldenRun : public ::testing::TestWithParam<std::string> {
     if (kind.find("tactile") != std::string::npos) {
       return Objective(squared_tactile());
     }
-    const bool variables = simulator_->model().variable_count() > 0;
+    const bool variables = horizon_->model().variable_count() > 0;
     return Objective(variables ? squared_variables() : squared_final_position());
   }
 
@@ -89,7 +91,7 @@ class GoldenRun : public ::testing::TestWithParam<std::string> {
   /// damping alone where ours (13) scales it.
   bool comparable(const std::string& name) const {
     const auto damped = [](const Contact& contact) { return contact.coefficients.damping != 0.0; };
-    const std::vector<Contact>& contacts = simulator_->model().contacts();
+    const std::vector<Contact>& contacts = horizon_->model().contacts();
     return name != "dp1" && name != "dp2" &&
            (name != "dp6" || std::none_of(contacts.begin(), contacts.end(), damped));
   }
@@ -107,14 +109,14 @@ class GoldenRun : public ::testing::TestWithParam<std::string> {
   }
 
   json golden_;
-  std::unique_ptr<Simulator> simulator_;
+  std::unique_ptr<Horizon> horizon_;
   Inputs inputs_;
   double tolerance_ = 1e-9;
 };
 
 TEST_P(GoldenRun, HasTheSameTrajectoryVariablesAndObjective) {
-  const Trajectory trajectory = simulator_->rollout(inputs_).trajectory();
-  const TrajectoryValues values = simulator_->values(trajectory);
+  const Trajectory trajectory = simulate(*horizon_, inputs_).trajectory();
+  const TrajectoryValues values = read_values(*horizon_, trajectory);
   const Eigen::Index steps = values.q.cols() - 1;
   EXPECT_TRUE(trajectory.chart_switches.empty());
   EXPECT_LT(relative_norm(values.q.rightCols(steps), columns_of(golden_.at("q"))), tolerance_);
@@ -135,7 +137,7 @@ TEST_P(GoldenRun, HasTheSameTrajectoryVariablesAndObjective) {
 TEST_P(GoldenRun, HasTheSameMassProperties) {
   for (const json& body : golden_.at("bodies")) {
     const std::string name = body.at("name");
-    const Body& ours = simulator_->model().link(simulator_->model().find_body(name)).body;
+    const Body& ours = horizon_->model().link(horizon_->model().find_body(name)).body;
     EXPECT_NEAR(ours.mass, body.at("mass"), tolerance_ * ours.mass) << name;
     EXPECT_LT(relative_norm(ours.inertia, vector_of(body.at("inertia"))), tolerance_) << name;
     const Eigen::VectorXd frame = vector_of(body.at("E_ji_R_rowmajor_p"));
@@ -173,14 +175,14 @@ Eigen::VectorXd gradient_part(const Gradient& gradient, const ParameterSet& set,
 }
 
 TEST_P(GoldenRun, HasTheSameGradients) {
-  const Trajectory trajectory = simulator_->rollout(inputs_).trajectory();
-  const Gradient ours = gradient(*simulator_, trajectory, objective());
+  const Trajectory trajectory = simulate(*horizon_, inputs_).trajectory();
+  const Gradient ours = gradient(*horizon_, trajectory, objective());
   int compared = 0;
   for (const auto& [name, differences] : golden_.at("fd_gradients").items()) {
     if (!comparable(name)) {
       continue;
     }
-    const Eigen::VectorXd part = gradient_part(ours, simulator_->parameters(), name);
+    const Eigen::VectorXd part = gradient_part(ours, horizon_->parameters(), name);
     const bool good = golden_.at("fd_check").at(name).at("pass");
     const json& reference = good ? golden_.at("gradients").at(name) : differences;
     const Eigen::VectorXd expected = vector_of(reference);

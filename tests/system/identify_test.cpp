@@ -104,7 +104,7 @@ TEST(Identify, PassesIpoptsDerivativeChecker) {
 
 TEST(Identify, MapsAMassOntoMomentsToo) {
   const Rig rig = rig_of(20);
-  const ParameterSet& set = rig.simulator.parameters();
+  const ParameterSet& set = rig.horizon.parameters();
   EXPECT_LT((rig.map->parameters(rig.map->nominal()) - set.nominal()).norm(), 1e-15);
   const Eigen::VectorXd p = rig.map->parameters(2.0 * rig.map->nominal());
   EXPECT_DOUBLE_EQ(p[set.find("body.rod.inertia.y")],

@@ -5,6 +5,8 @@
 #include <numeric>
 
 #include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/rotation.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random_model.h"
@@ -17,7 +19,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using testing::relative_gap;
 
-Simulator make_simulator(const Model& model, const Integrator& integrator, double h, int steps) {
+Horizon make_horizon(const Model& model, const Integrator& integrator, double h, int steps) {
   SimulationOptions options;
   options.integrator = integrator.name;
   options.h = h;
@@ -42,10 +44,10 @@ TEST(EveryMethod, LosesEnergyWithItsOrder) {
   const Model model = testing::double_pendulum();
   for (const Integrator& integrator : integrators()) {
     const auto drift = [&](int n) {
-      Simulator simulator = make_simulator(model, integrator, 1.0 / n, n);
-      Inputs inputs = simulator.nominal_inputs();
+      Horizon horizon = make_horizon(model, integrator, 1.0 / n, n);
+      Inputs inputs = horizon.nominal_inputs();
       inputs.q0 << 0.8, -0.5;
-      const TrajectoryValues values = simulator.values(simulator.rollout(inputs).trajectory());
+      const TrajectoryValues values = read_values(horizon, simulate(horizon, inputs).trajectory());
       const double start = energy(model, values, 0);
       double largest = 0.0;
       for (Eigen::Index k = 1; k <= n; ++k) {
@@ -60,19 +62,19 @@ TEST(EveryMethod, LosesEnergyWithItsOrder) {
 }
 
 /// A free body that flies and spins.
-Trajectory flight(Simulator& simulator) {
-  Inputs inputs = simulator.nominal_inputs();
+Trajectory flight(const Horizon& horizon) {
+  Inputs inputs = horizon.nominal_inputs();
   inputs.q0 << 0.1, 0.2, 0.3, 0.2, -0.1, 0.3;
   inputs.qdot0 << 1.0, -2.0, 0.5, 1.0, 2.0, -1.5;
-  return simulator.rollout(inputs).trajectory();
+  return simulate(horizon, inputs).trajectory();
 }
 
 TEST(EveryMethod, ConservesTheMomentumOfAFreeBody) {
   for (const Integrator& integrator : integrators()) {
     for (const JointKind& kind : {JointKind(Free3dExpJoint{}), JointKind(Free3dEulerJoint{})}) {
       const Model model = testing::single_body(kind, Vector3d::Zero());
-      Simulator simulator = make_simulator(model, integrator, 0.01, 100);
-      const Trajectory trajectory = flight(simulator);
+      Horizon horizon = make_horizon(model, integrator, 0.01, 100);
+      const Trajectory trajectory = flight(horizon);
       const Vector3d velocity(1.0, -2.0, 0.5);
       for (int s = 0; s < trajectory.timeline.stage_count(); ++s) {
         EXPECT_LT((trajectory.qdot.col(s).head<3>() - velocity).norm(), 1e-12 * velocity.norm())
@@ -92,8 +94,8 @@ TEST(EveryMethod, LosesAngularMomentumOfAFreeBodyWithItsOrder) {
   };
   for (const Integrator& integrator : integrators()) {
     const auto drift = [&](int n) {
-      Simulator simulator = make_simulator(model, integrator, 1.0 / n, n);
-      const Trajectory trajectory = flight(simulator);
+      Horizon horizon = make_horizon(model, integrator, 1.0 / n, n);
+      const Trajectory trajectory = flight(horizon);
       return (momentum(trajectory.q_at_step(n), trajectory.qdot_at_step(n)) -
               momentum(trajectory.q_at_step(0), trajectory.qdot_at_step(0)))
           .norm();
@@ -140,15 +142,15 @@ std::vector<int> in_order(const Model& model) {
 struct Example {
   Example(const Model& m, const Integrator& integrator, const Objective& objective,
           const VectorXd& q0, const VectorXd& qdot0)
-      : simulator(make_simulator(m, integrator, 0.01, 6)), inputs(simulator.nominal_inputs()) {
+      : horizon(make_horizon(m, integrator, 0.01, 6)), inputs(horizon.nominal_inputs()) {
     testing::Random random(5);
     inputs.u = 0.8 * random.matrix(inputs.u.rows(), inputs.u.cols());
     inputs.q0 = q0;
     inputs.qdot0 = qdot0;
-    trajectory = simulator.rollout(inputs).trajectory();
-    gradient = hbar::gradient(simulator, trajectory, objective);
+    trajectory = simulate(horizon, inputs).trajectory();
+    gradient = hbar::gradient(horizon, trajectory, objective);
   }
-  Simulator simulator;
+  Horizon horizon;
   Inputs inputs;
   Trajectory trajectory;
   Gradient gradient;
@@ -173,7 +175,7 @@ TEST(Motion, DoesNotDependOnTheWorldFrame) {
     EXPECT_LT(relative_gap(there.trajectory.q, here.trajectory.q), 1e-11) << integrator.name;
     EXPECT_LT(relative_gap(there.trajectory.qdot, here.trajectory.qdot), 1e-11);
     VectorXd p = there.gradient.p;
-    const ParameterSet& set = here.simulator.parameters();
+    const ParameterSet& set = here.horizon.parameters();
     for (const ParameterBlock& block : set.blocks()) {
       // What is written in the world's axes turns with them.
       const bool root =
@@ -228,7 +230,7 @@ TEST(Motion, DoesNotDependOnTheOrderOfLinks) {
     EXPECT_LT(relative_gap(two.gradient.u, one.gradient.u), 1e-11) << integrator.name;
     VectorXd p(one.gradient.p.size());
     for (int i = 0; i < p.size(); ++i) {
-      p[i] = two.gradient.p[two.simulator.parameters().find(one.simulator.parameters()[i].name)];
+      p[i] = two.gradient.p[two.horizon.parameters().find(one.horizon.parameters()[i].name)];
     }
     EXPECT_LT(relative_gap(p, one.gradient.p), 1e-11) << integrator.name;
   }
@@ -272,8 +274,8 @@ TEST(Motion, DoesNotDependOnTheUnits) {
   const VectorXd q0 = VectorXd::LinSpaced(metres.dof(), -0.3, 0.4);
   const VectorXd qdot0 = VectorXd::LinSpaced(metres.dof(), 1.0, -1.0);
   for (const Integrator& integrator : integrators()) {
-    Simulator in_metres = make_simulator(metres, integrator, 0.01, 100);
-    Simulator in_centimetres = make_simulator(centimetres, integrator, 0.01, 100);
+    Horizon in_metres = make_horizon(metres, integrator, 0.01, 100);
+    Horizon in_centimetres = make_horizon(centimetres, integrator, 0.01, 100);
     Inputs inputs = in_metres.nominal_inputs();
     inputs.u.setConstant(0.1);
     inputs.q0 = q0;
@@ -282,8 +284,8 @@ TEST(Motion, DoesNotDependOnTheUnits) {
     scaled.u = unit.asDiagonal() * inputs.u;
     scaled.q0 = unit.asDiagonal() * q0;
     scaled.qdot0 = unit.asDiagonal() * qdot0;
-    const Trajectory one = in_metres.rollout(inputs).trajectory();
-    const Trajectory two = in_centimetres.rollout(scaled).trajectory();
+    const Trajectory one = simulate(in_metres, inputs).trajectory();
+    const Trajectory two = simulate(in_centimetres, scaled).trajectory();
     EXPECT_LT(relative_gap(unit.cwiseInverse().asDiagonal() * two.q, one.q), 1e-10)
         << integrator.name;
     EXPECT_LT(relative_gap(unit.cwiseInverse().asDiagonal() * two.qdot, one.qdot), 1e-10)
@@ -299,14 +301,14 @@ VectorXd planar_gradient(const JointKind& kind, const Integrator& integrator, do
   builder.add_link(-1, Joint{.name = "joint", .kind = kind},
                    testing::body_at({0.0, 0.3, -0.4}, 1.5, {0.1, 0.12, 0.14}, "body"));
   builder.add_end_effector({.name = "tip", .link = 0, .position = {0.1, 0.2, -0.8}});
-  Simulator simulator = make_simulator(builder.build(), integrator, 0.01, 30);
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon = make_horizon(builder.build(), integrator, 0.01, 30);
+  Inputs inputs = horizon.nominal_inputs();
   inputs.q0[0] = a;
   inputs.qdot0[0] = 0.7;
   // The tip keeps its distance from the origin: only a target elsewhere has a gradient.
   const Objective objective(variable_tracking(Eigen::Vector3d(0.2, 0.1, -0.3)));
-  const Gradient g = gradient(simulator, simulator.rollout(inputs).trajectory(), objective);
-  const ParameterSet& set = simulator.parameters();
+  const Gradient g = gradient(horizon, simulate(horizon, inputs).trajectory(), objective);
+  const ParameterSet& set = horizon.parameters();
   VectorXd out(5);
   out << g.p[set.find("body.body.mass")], g.p[set.find("body.body.inertia.x")],
       g.p[set.find("gravity.z")], g.q0[0], g.qdot0[0];

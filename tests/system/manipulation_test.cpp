@@ -94,7 +94,7 @@ TEST(Manipulation, MapsLengthsAffinely) {
   EXPECT_TRUE(check.has_hessian);
   EXPECT_EQ(check.hessian_gap, 0.0);
   const Eigen::VectorXd p = map.parameters(map.variables().start);
-  EXPECT_LT((p - problem->problem().simulator.parameters().nominal()).norm(), 1e-15);
+  EXPECT_LT((p - problem->problem().horizon.parameters().nominal()).norm(), 1e-15);
 }
 
 TEST(Manipulation, RefusesATaskOfAnotherScene) {

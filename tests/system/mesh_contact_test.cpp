@@ -4,6 +4,8 @@
 
 #include "hbar/adjoint/derivatives/check_gradient.h"
 #include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/geometry/distance_grid.h"
 #include "hbar/core/geometry/surface_points.h"
 #include "hbar/core/model/model_builder.h"
@@ -36,8 +38,8 @@ Problem box_on_ball(const ContactSurface& surface, int steps) {
   options.h = 0.005;
   options.steps = steps;
   Problem problem{
-      Simulator(model, ParameterSet::all(model), options), Objective(squared_variables()), {}};
-  problem.inputs = problem.simulator.nominal_inputs();
+      Horizon(model, ParameterSet::all(model), options), Objective(squared_variables()), {}};
+  problem.inputs = problem.horizon.nominal_inputs();
   problem.inputs.q0 << 0.0, 0.0, 0.0, 0.004, -0.003, -0.001, 0.02, 0.03, 0.05;
   return problem;
 }
@@ -46,9 +48,9 @@ TEST(MeshContact, MovesLikeTheShapeItsTrianglesApproximate) {
   const auto field = mesh_distance(icosphere(kRadius, 4), 48);
   Problem mesh = box_on_ball(field, 60);
   Problem shape = box_on_ball(OwnShape{}, 60);
-  const Trajectory a = mesh.simulator.rollout(mesh.inputs).trajectory();
-  const Trajectory b = shape.simulator.rollout(shape.inputs).trajectory();
-  const auto touching = mesh.simulator.contact_history(a);
+  const Trajectory a = simulate(mesh.horizon, mesh.inputs).trajectory();
+  const Trajectory b = simulate(shape.horizon, shape.inputs).trajectory();
+  const auto touching = contact_history(mesh.horizon, a);
   EXPECT_GT(touching.back()[0].active, 0);
   // Facets of an icosphere of 5120 triangles lie up to 1e-4 of its radius inside.
   EXPECT_LT((a.q - b.q).cwiseAbs().maxCoeff(), 0.02);

@@ -6,6 +6,8 @@
 #include <Eigen/Cholesky>
 
 #include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/rotation.h"
 #include "tests/support/random_model.h"
 #include "tests/support/scenes.h"
@@ -71,8 +73,8 @@ Matrix3d reference_rotation(const Vector3d& I, const Matrix3d& R0, const Vector3
   return runge_kutta(f, x, T, 4000).head(9).reshaped(3, 3);
 }
 
-Simulator simulator_until(const Model& model, const Integrator& integrator, double T, int steps,
-                          const ParameterSet& set = {}) {
+Horizon horizon_until(const Model& model, const Integrator& integrator, double T, int steps,
+                      const ParameterSet& set = {}) {
   SimulationOptions options;
   options.integrator = integrator.name;
   options.h = T / steps;
@@ -90,8 +92,8 @@ double observed_order(const Error& error, int n) {
 /// Steps from which on the orders are within 0.05 of their limits.
 int enough_steps(const Integrator& integrator) { return integrator.order == 1 ? 3200 : 400; }
 
-Inputs pendulum_inputs(const Simulator& simulator) {
-  Inputs inputs = simulator.nominal_inputs();
+Inputs pendulum_inputs(const Horizon& horizon) {
+  Inputs inputs = horizon.nominal_inputs();
   inputs.q0 << 0.8, -0.5;
   inputs.qdot0 << 0.6, 1.0;
   return inputs;
@@ -101,11 +103,11 @@ TEST(EveryMethod, ConvergesWithItsOrderOnADoublePendulum) {
   constexpr double kT = 1.0;
   const Model model = testing::double_pendulum();
   for (const Integrator& integrator : integrators()) {
-    Simulator any = simulator_until(model, integrator, kT, 1);
+    Horizon any = horizon_until(model, integrator, kT, 1);
     const VectorXd exact = reference_state(model, pendulum_inputs(any), kT);
     const auto state_at = [&](int n) {
-      Simulator simulator = simulator_until(model, integrator, kT, n);
-      const Trajectory trajectory = simulator.rollout(pendulum_inputs(simulator)).trajectory();
+      Horizon horizon = horizon_until(model, integrator, kT, n);
+      const Trajectory trajectory = simulate(horizon, pendulum_inputs(horizon)).trajectory();
       VectorXd state(4);
       state << trajectory.q_at_step(n), trajectory.qdot_at_step(n);
       return state;
@@ -124,12 +126,12 @@ TEST(EveryMethod, ConvergesWithItsOrderOnADoublePendulum) {
 /// dΨ/d(p, q₀, q̇₀) of Ψ = ½ ‖v_N − target‖².
 VectorXd gradient_at(const Model& model, const ParameterSet& set, const Integrator& integrator,
                      double T, int n, const VectorXd& q0, const VectorXd& qdot0) {
-  Simulator simulator = simulator_until(model, integrator, T, n, set);
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon = horizon_until(model, integrator, T, n, set);
+  Inputs inputs = horizon.nominal_inputs();
   inputs.q0 = q0;
   inputs.qdot0 = qdot0;
   const VectorXd target = VectorXd::LinSpaced(model.variable_count(), -1.0, 1.0);
-  const Gradient g = gradient(simulator, simulator.rollout(inputs).trajectory(),
+  const Gradient g = gradient(horizon, simulate(horizon, inputs).trajectory(),
                               Objective(testing::final_variables(target)));
   VectorXd out(g.p.size() + g.q0.size() + g.qdot0.size());
   out << g.p, g.q0, g.qdot0;
@@ -168,13 +170,13 @@ TEST(EveryMethod, ConvergesWithItsOrderThroughAChangeOfChart) {
   const Vector3d exact = R * scene.model.end_effectors()[0].position;
   for (const Integrator& integrator : integrators()) {
     const auto error = [&](int n) {
-      Simulator simulator = simulator_until(scene.model, integrator, scene.T, n);
-      Inputs inputs = simulator.nominal_inputs();
+      Horizon horizon = horizon_until(scene.model, integrator, scene.T, n);
+      Inputs inputs = horizon.nominal_inputs();
       inputs.q0 = scene.r0;
       inputs.qdot0 = scene.rate0;
-      const Trajectory trajectory = simulator.rollout(inputs).trajectory();
+      const Trajectory trajectory = simulate(horizon, inputs).trajectory();
       EXPECT_EQ(trajectory.chart_switches.size(), 1U) << integrator.name;
-      return (simulator.values(trajectory).v.col(n) - exact).norm();
+      return (read_values(horizon, trajectory).v.col(n) - exact).norm();
     };
     const int n = enough_steps(integrator);
     EXPECT_LT(error(n), 0.05) << integrator.name;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/numerics.h"
 #include "tests/support/scenes.h"
@@ -12,13 +13,13 @@
 namespace hbar {
 namespace {
 
-using testing::make_simulator;
+using testing::make_horizon;
 using testing::message_of;
 using testing::options_of;
 
 /// Swings the stiff pendulum into its limit after some steps.
-Inputs swing(const Simulator& simulator) {
-  Inputs inputs = simulator.nominal_inputs();
+Inputs swing(const Horizon& horizon) {
+  Inputs inputs = horizon.nominal_inputs();
   inputs.q0 << 0.1, 0.1;
   inputs.qdot0 << 3.0, -0.5;
   inputs.u.setConstant(0.3);
@@ -28,9 +29,9 @@ Inputs swing(const Simulator& simulator) {
 TEST(Robustness, StiffLimitsAndMotorsConvergeWithTheDefaults) {
   for (const Integrator& integrator : integrators()) {
     for (const bool implicit_motor : {false, true}) {
-      Simulator simulator = make_simulator(testing::stiff_pendulum(implicit_motor),
-                                           options_of(integrator.name, 0.01, 100));
-      const Rollout rollout = simulator.rollout(swing(simulator));
+      Horizon horizon = make_horizon(testing::stiff_pendulum(implicit_motor),
+                                     options_of(integrator.name, 0.01, 100));
+      const Rollout rollout = simulate(horizon, swing(horizon));
       ASSERT_TRUE(rollout.converged()) << integrator.name << ": " << rollout.report().message;
       const Trajectory& trajectory = rollout.trajectory();
       EXPECT_GT(trajectory.q.row(0).maxCoeff(), 0.2);
@@ -45,11 +46,11 @@ TEST(Robustness, StiffLimitsAndMotorsConvergeWithTheDefaults) {
 TEST(Robustness, AHalvedStepIsRecordedAndEndsAtItsTime) {
   for (const Integrator& integrator : integrators()) {
     SimulationOptions options = options_of(integrator.name, 0.02, 20);
-    Simulator whole = make_simulator(testing::double_pendulum(), options);
-    const int stages = whole.rollout(whole.nominal_inputs()).trajectory().timeline.stage_count();
+    Horizon whole = make_horizon(testing::double_pendulum(), options);
+    const int stages = simulate(whole, whole.nominal_inputs()).trajectory().timeline.stage_count();
     options.newton.max_iter = 4;
-    Simulator simulator = make_simulator(testing::stiff_pendulum(false), options);
-    const Rollout rollout = simulator.rollout(swing(simulator));
+    Horizon horizon = make_horizon(testing::stiff_pendulum(false), options);
+    const Rollout rollout = simulate(horizon, swing(horizon));
     const Trajectory& trajectory = rollout.trajectory();
     EXPECT_GT(trajectory.timeline.stage_count(), stages) << integrator.name;
     EXPECT_LE(rollout.report().smallest_h, 0.01) << integrator.name;
@@ -67,8 +68,8 @@ TEST(Robustness, AFailureSaysWhereWhyAndWhatToTry) {
   SimulationOptions options = options_of("bdf1", 0.01, 50);
   options.newton.max_iter = 3;
   options.max_halvings = 0;
-  Simulator simulator = make_simulator(testing::stiff_pendulum(false), options);
-  const Rollout rollout = simulator.rollout(swing(simulator));
+  Horizon horizon = make_horizon(testing::stiff_pendulum(false), options);
+  const Rollout rollout = simulate(horizon, swing(horizon));
   const RolloutReport& report = rollout.report();
   ASSERT_EQ(report.status, RolloutStatus::kStepFailed);
   EXPECT_FALSE(rollout.converged());
@@ -78,7 +79,7 @@ TEST(Robustness, AFailureSaysWhereWhyAndWhatToTry) {
       concat("simulation stopped at step ", report.steps_done + 1, " of 50 (t = ", report.time,
              "): iteration limit reached after 3 iterations, |g| = ", report.last_newton.residual,
              " (tol 1e-09), largest correction in coordinate '",
-             simulator.model().coordinate_name(report.last_newton.worst),
+             horizon.model().coordinate_name(report.last_newton.worst),
              "', smallest time step tried 0.01; try a smaller time step, softer springs, "
              "limits, contacts or motor gains, or a larger Newton tolerance"));
 }
@@ -87,9 +88,9 @@ TEST(Robustness, AFailureKeepsWhatWasReachedAndHandsOutNoTrajectory) {
   SimulationOptions options = options_of("bdf2", 0.01, 50);
   options.newton.max_iter = 3;
   options.max_halvings = 0;
-  Simulator simulator = make_simulator(testing::stiff_pendulum(false), options);
-  const Inputs inputs = swing(simulator);
-  const Rollout rollout = simulator.rollout(inputs);
+  Horizon horizon = make_horizon(testing::stiff_pendulum(false), options);
+  const Inputs inputs = swing(horizon);
+  const Rollout rollout = simulate(horizon, inputs);
   const Trajectory& partial = rollout.partial();
   const int done = rollout.report().steps_done;
   ASSERT_GT(done, 0);
@@ -101,14 +102,14 @@ TEST(Robustness, AFailureKeepsWhatWasReachedAndHandsOutNoTrajectory) {
   EXPECT_EQ(message_of<NumericalFailure>([&] { static_cast<void>(rollout.trajectory()); }),
             rollout.report().message);
   EXPECT_EQ(message_of<NumericalFailure>(
-                [&] { static_cast<void>(simulator.rollout(inputs).trajectory()); }),
+                [&] { static_cast<void>(simulate(horizon, inputs).trajectory()); }),
             rollout.report().message);
   // What was reached is what a shorter simulation gives.
   options.steps = done;
-  Simulator shorter = make_simulator(testing::stiff_pendulum(false), options);
+  Horizon shorter = make_horizon(testing::stiff_pendulum(false), options);
   Inputs short_inputs = inputs;
   short_inputs.u = inputs.u.leftCols(done);
-  EXPECT_EQ(shorter.rollout(short_inputs).trajectory().q, partial.q);
+  EXPECT_EQ(simulate(shorter, short_inputs).trajectory().q, partial.q);
 }
 
 TEST(Robustness, HalvesNoMoreOftenThanAllowed) {
@@ -116,8 +117,8 @@ TEST(Robustness, HalvesNoMoreOftenThanAllowed) {
     SimulationOptions options = options_of("sdirk2", 0.01, 5);
     options.newton.max_iter = 1;  // never enough
     options.max_halvings = halvings;
-    Simulator simulator = make_simulator(testing::double_pendulum(), options);
-    const Rollout rollout = simulator.rollout(simulator.nominal_inputs());
+    Horizon horizon = make_horizon(testing::double_pendulum(), options);
+    const Rollout rollout = simulate(horizon, horizon.nominal_inputs());
     EXPECT_EQ(rollout.report().status, RolloutStatus::kStepFailed);
     EXPECT_EQ(rollout.report().smallest_h, std::ldexp(0.01, -halvings));
     EXPECT_EQ(rollout.report().steps_done, 0);
@@ -130,19 +131,19 @@ TEST(Robustness, AFailureLeavesTheSimulatorAsItWas) {
   options.newton.max_iter = 3;
   options.max_halvings = 0;
   const Model model = testing::stiff_pendulum(false);
-  Simulator simulator = make_simulator(model, options);
-  ASSERT_FALSE(simulator.rollout(swing(simulator)).converged());
-  Simulator fresh = make_simulator(model, options);
-  const Inputs gentle = simulator.nominal_inputs();
-  EXPECT_EQ(simulator.rollout(gentle).trajectory().q, fresh.rollout(gentle).trajectory().q);
+  const Horizon horizon = make_horizon(model, options);
+  Simulator used(horizon);
+  ASSERT_FALSE(used.rollout(swing(horizon)).converged());
+  const Inputs gentle = horizon.nominal_inputs();
+  EXPECT_EQ(used.rollout(gentle).trajectory().q, simulate(horizon, gentle).trajectory().q);
 }
 
 TEST(Robustness, AbsurdInputsEndInAFailureThatIsSaid) {
   for (const double speed : {1e30, 1e160, 1e308}) {
-    Simulator simulator = make_simulator(testing::double_pendulum(), options_of("bdf2", 0.01, 3));
-    Inputs inputs = simulator.nominal_inputs();
+    Horizon horizon = make_horizon(testing::double_pendulum(), options_of("bdf2", 0.01, 3));
+    Inputs inputs = horizon.nominal_inputs();
     inputs.qdot0 << speed, -speed;
-    const Rollout rollout = simulator.rollout(inputs);
+    const Rollout rollout = simulate(horizon, inputs);
     if (rollout.converged()) {
       EXPECT_TRUE(rollout.trajectory().q.allFinite()) << speed;
       EXPECT_TRUE(rollout.trajectory().qdot.allFinite()) << speed;
@@ -161,12 +162,12 @@ TEST(Robustness, MassesMayDifferByEightDecades) {
     builder.add_link(
         1, joint,
         testing::body_at({0.0, 0.0, -0.1}, mass, mass * Eigen::Vector3d(.1, .1, .1), "hand"));
-    Simulator simulator = make_simulator(builder.build(), options_of("bdf2", 0.005, 100));
-    Inputs inputs = simulator.nominal_inputs();
+    Horizon horizon = make_horizon(builder.build(), options_of("bdf2", 0.005, 100));
+    Inputs inputs = horizon.nominal_inputs();
     inputs.q0 << 0.5, 0.5, 0.5;
-    const Rollout rollout = simulator.rollout(inputs);
+    const Rollout rollout = simulate(horizon, inputs);
     ASSERT_TRUE(rollout.converged()) << mass << ": " << rollout.report().message;
-    AdjointSweep sweep(simulator);
+    AdjointSweep sweep(horizon);
     const Gradient g = sweep.gradient(rollout.trajectory(), Objective(squared_variables()));
     EXPECT_TRUE(g.p.allFinite());
     EXPECT_LT(sweep.worst_residual(), 1e-13) << mass;
@@ -174,11 +175,11 @@ TEST(Robustness, MassesMayDifferByEightDecades) {
 }
 
 TEST(Robustness, AUsersExceptionLeavesTheSweepUsable) {
-  Simulator simulator = make_simulator(testing::double_pendulum(), options_of("bdf1", 0.01, 10));
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon = make_horizon(testing::double_pendulum(), options_of("bdf1", 0.01, 10));
+  Inputs inputs = horizon.nominal_inputs();
   inputs.q0 << 0.3, 0.2;
-  const Trajectory trajectory = simulator.rollout(inputs).trajectory();
-  AdjointSweep sweep(simulator);
+  const Trajectory trajectory = simulate(horizon, inputs).trajectory();
+  AdjointSweep sweep(horizon);
   const Objective good(squared_variables());
   const Gradient before = sweep.gradient(trajectory, good);
   const Objective bad(user_term(

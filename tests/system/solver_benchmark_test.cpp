@@ -16,6 +16,7 @@
 #include "examples/solver_benchmark/measure.h"
 #include "examples/solver_benchmark/performance_profile.h"
 #include "examples/solver_benchmark/scaling.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar::solver_benchmark {
@@ -32,11 +33,11 @@ TEST(BenchmarkFamilies, HaveTheirJointsAndMoveForManySteps) {
       const Model model = make_model(family, joints);
       EXPECT_EQ(model.dof(), joints + (family.name == "hand" ? 6 : 0));
       EXPECT_EQ(model.control_count(), joints);
-      Simulator simulator(model, ParameterSet::named(model, {}),
-                          {.integrator = "bdf2", .h = family.h, .steps = 300});
-      Inputs inputs = simulator.nominal_inputs();
+      Horizon horizon(model, ParameterSet::named(model, {}),
+                      {.integrator = "bdf2", .h = family.h, .steps = 300});
+      Inputs inputs = horizon.nominal_inputs();
       set_gentle_motion(family, model, inputs);
-      const Rollout rollout = simulator.rollout(inputs);
+      const Rollout rollout = simulate(horizon, inputs);
       ASSERT_TRUE(rollout.converged()) << rollout.report().message;
       EXPECT_GT(rollout.partial().qdot_at_step(300).norm(), 1e-3);
     }

@@ -10,6 +10,8 @@
 
 #include "examples/swing_up/measure.h"
 #include "hbar/adjoint/study/solution_file.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "hbar/solvers/nlp/hessian_check.h"
 #include "hbar/solvers/nlp/ipopt_derivatives.h"
@@ -42,10 +44,10 @@ TEST(SwingUp, EndsUprightAtRestWithinTrackAndForce) {
   EXPECT_LT(values.u.cwiseAbs().maxCoeff(), 1.0 + 1e-7);
   // The motion is one: simulating the controls gives it again, to what chaos makes of 1e-8.
   Inputs inputs = program->inputs(result.x);
-  Simulator simulator = program->problem().simulator;
-  const Rollout rollout = simulator.rollout(inputs);
+  Horizon horizon = program->problem().horizon;
+  const Rollout rollout = simulate(horizon, inputs);
   ASSERT_TRUE(rollout.converged());
-  EXPECT_LT((simulator.values(rollout.trajectory()).q - values.q).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_LT((read_values(horizon, rollout.trajectory()).q - values.q).cwiseAbs().maxCoeff(), 1e-4);
 }
 
 TEST(SwingUp, NeedsFewerIterationsWithTheExactHessianThanWithLimitedMemory) {

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "tests/support/random_model.h"
 #include "tests/support/scenes.h"
 
@@ -29,20 +30,21 @@ Simulator make_simulator(const Model& model, const std::string& integrator) {
   options.integrator = integrator;
   options.h = 0.01;
   options.steps = 6;
-  return {model, ParameterSet::all(model), options};
+  return Simulator({model, ParameterSet::all(model), options});
 }
 
 Outcome run(Simulator& simulator) {
-  const Model& model = simulator.model();
+  const Horizon& horizon = simulator.horizon();
+  const Model& model = horizon.model();
   testing::Random random(7);
-  Inputs inputs = simulator.nominal_inputs();
+  Inputs inputs = horizon.nominal_inputs();
   inputs.u = 0.5 * random.matrix(model.control_count(), 6);
   inputs.q0 = random.vector(model.dof(), 0.3);
   inputs.qdot0 = random.vector(model.dof(), 0.5);
   const Trajectory trajectory = simulator.rollout(inputs).trajectory();
   Objective objective(squared_variables());
   objective.add(squared_velocity());
-  return {trajectory.q, trajectory.qdot, gradient(simulator, trajectory, objective)};
+  return {trajectory.q, trajectory.qdot, gradient(horizon, trajectory, objective)};
 }
 
 class SameBits : public ::testing::TestWithParam<std::string> {};
@@ -63,7 +65,7 @@ TEST_P(SameBits, WhateverWasComputedBefore) {
   const Model model = testing::random_model(41);
   Simulator fresh = make_simulator(model, GetParam());
   Simulator used = make_simulator(model, GetParam());
-  Inputs other = used.nominal_inputs();
+  Inputs other = used.horizon().nominal_inputs();
   other.q0.setConstant(0.2);
   other.p.array() += 0.001;
   EXPECT_TRUE(used.rollout(other).converged());

@@ -100,7 +100,7 @@ TEST(Walker, HasTheDerivativesThatDifferencesGive) {
   problem.q_scale = Eigen::VectorXd::Constant(7, 1e-2);
   problem.qdot_scale = Eigen::VectorXd::Constant(7, 0.1);
   TranscriptionOptions options{.formulation = Formulation::kAllAtOnce};
-  options.q_guess = first_guess(plan, problem.simulator.model());
+  options.q_guess = first_guess(plan, problem.horizon.model());
   const auto program = transcribe(problem, options);
   Eigen::VectorXd x = program->variables().start;
   const Eigen::Index first = program->input_variables().control_place(0);
@@ -118,7 +118,7 @@ TEST(Walker, FindsAGaitThatSimulationRepeats) {
   plan.speed = 0.8;
   const TrajectoryProblem problem = walker_problem(plan, Aim::kFollowGuess);
   TranscriptionOptions options{.formulation = Formulation::kAllAtOnce};
-  options.q_guess = first_guess(plan, problem.simulator.model());
+  options.q_guess = first_guess(plan, problem.horizon.model());
   const auto program = transcribe(problem, options);
   solvers::IpoptOptions ipopt = ipopt_options(Aim::kFollowGuess, nullptr);
   ipopt.tolerance = 1e-9;  // walking without balance multiplies what is left of the equations

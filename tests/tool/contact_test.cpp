@@ -4,6 +4,8 @@
 #include <numbers>
 
 #include "hbar/adjoint/programs/load_problem.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "tests/tool/running.h"
 
 namespace hbar::tool {
@@ -76,10 +78,10 @@ TEST_F(ToolContact, ResultsHoldWhatTheLibraryComputes) {
   options.steps = 20;
   options.objective = ObjectiveChoice::kTactile;
   LoadedProblem loaded = load_problem(kPad, options);
-  Simulator& simulator = loaded.problem.simulator;
-  const Trajectory trajectory = simulator.rollout(loaded.problem.inputs).trajectory();
-  const Eigen::MatrixXd tactile = simulator.values(trajectory).tactile;
-  const auto contact = simulator.contact_history(trajectory);
+  const Horizon& horizon = loaded.problem.horizon;
+  const Trajectory trajectory = simulate(horizon, loaded.problem.inputs).trajectory();
+  const Eigen::MatrixXd tactile = read_values(horizon, trajectory).tactile;
+  const auto contact = contact_history(horizon, trajectory);
 
   const json r = run({"simulate", kPad, "--steps", "20", "--objective", "tactile"});
   EXPECT_EQ(r.at("contacts"), json({"ball-ground", "pad-ball"}));

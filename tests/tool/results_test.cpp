@@ -4,6 +4,8 @@
 
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/programs/load_problem.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "tests/tool/running.h"
 
 namespace hbar::tool {
@@ -60,9 +62,9 @@ TEST_F(ToolResults, JsonHoldsWhatTheLibraryComputes) {
   for (Eigen::Index k = 0; k < 15; ++k) {
     problem.inputs.u.col(k) << 0.1 * static_cast<double>(k), -0.3, 0.7;
   }
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-  const TrajectoryValues values = problem.simulator.values(trajectory);
-  const Gradient expected = gradient(problem.simulator, trajectory, problem.objective);
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  const TrajectoryValues values = read_values(problem.horizon, trajectory);
+  const Gradient expected = gradient(problem.horizon, trajectory, problem.objective);
 
   const std::string controls =
       write("u.csv", "yaw, shoulder, elbow\r\n" + text_of(problem.inputs.u, ", "));
@@ -96,7 +98,7 @@ TEST_F(ToolResults, JsonHoldsWhatTheLibraryComputes) {
   EXPECT_LT(relative_gap(columns_of(g.at("u")), expected.u), 1e-12);
   EXPECT_LT(relative_gap(vector_of(g.at("q0")), expected.q0), 1e-12);
   EXPECT_LT(relative_gap(vector_of(g.at("qdot0")), expected.qdot0), 1e-12);
-  const ParameterSet& parameters = problem.simulator.parameters();
+  const ParameterSet& parameters = problem.horizon.parameters();
   ASSERT_EQ(g.at("p").size(), static_cast<std::size_t>(parameters.size()));
   for (int i = 0; i < parameters.size(); ++i) {
     const json& p = g.at("p").at(static_cast<std::size_t>(i));

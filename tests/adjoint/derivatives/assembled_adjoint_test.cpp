@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/solvers/linear/klu.h"
 #ifdef HBAR_HAVE_UMFPACK
 #include "hbar/solvers/linear/umfpack.h"
@@ -28,10 +29,10 @@ class AssembledAdjointOfEveryIntegrator : public ::testing::TestWithParam<std::s
 TEST_P(AssembledAdjointOfEveryIntegrator, HasTheSweepsGradientFromEverySolver) {
   for (const bool spinning : {false, true}) {
     Problem problem = spinning ? spinning_problem(GetParam()) : small_problem(GetParam());
-    const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-    const Gradient swept = gradient(problem.simulator, trajectory, problem.objective);
+    const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+    const Gradient swept = gradient(problem.horizon, trajectory, problem.objective);
     for (const solvers::SolverFactory& factory : every_solver()) {
-      AssembledAdjoint assembled(problem.simulator, factory);
+      AssembledAdjoint assembled(problem.horizon, factory);
       const Gradient ours = assembled.gradient(trajectory, problem.objective);
       const std::string name = assembled.solver().name();
       EXPECT_EQ(ours.value, swept.value) << name;
@@ -45,12 +46,11 @@ TEST_P(AssembledAdjointOfEveryIntegrator, HasTheSweepsGradientFromEverySolver) {
 
 TEST_P(AssembledAdjointOfEveryIntegrator, AnalysesItsPatternOnce) {
   Problem problem = small_problem(GetParam());
-  AssembledAdjoint assembled(problem.simulator, [](const auto& options, const auto&) {
-    return solvers::make_klu(options);
-  });
+  AssembledAdjoint assembled(
+      problem.horizon, [](const auto& options, const auto&) { return solvers::make_klu(options); });
   for (int i = 0; i < 4; ++i) {
     problem.inputs.q0[0] += 0.01;
-    const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+    const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
     EXPECT_GT(assembled.gradient(trajectory, problem.objective).value, 0.0);
   }
   EXPECT_EQ(assembled.solver().statistics().analyses, 1);

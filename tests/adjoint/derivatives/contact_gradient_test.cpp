@@ -7,6 +7,8 @@
 
 #include "hbar/adjoint/derivatives/assembled_adjoint.h"
 #include "hbar/adjoint/derivatives/check_gradient.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/solvers/linear/klu.h"
 #include "tests/support/small_problems.h"
 
@@ -26,7 +28,7 @@ struct Events {
 
 Events events_of(Problem& problem) {
   const auto history =
-      problem.simulator.contact_history(problem.simulator.rollout(problem.inputs).trajectory());
+      contact_history(problem.horizon, simulate(problem.horizon, problem.inputs).trajectory());
   Events events;
   for (std::size_t k = 1; k < history.size(); ++k) {
     for (std::size_t c = 0; c < history[k].size(); ++c) {
@@ -88,13 +90,13 @@ TEST_P(ContactGradientOfEveryIntegrator, PassesForATactileObjective) {
 TEST_P(ContactGradientOfEveryIntegrator, IsThatOfTheAssembledAdjoint) {
   for (const Reaction reaction : {Reaction::kPoint, Reaction::kSurface}) {
     Problem problem = contact_problem(GetParam(), 0.01, 40, {.reaction = reaction});
-    const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-    const Gradient swept = gradient(problem.simulator, trajectory, problem.objective);
+    const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+    const Gradient swept = gradient(problem.horizon, trajectory, problem.objective);
     for (const bool klu : {false, true}) {
       const solvers::SolverFactory by_klu = [](const auto& options, const auto&) {
         return solvers::make_klu(options);
       };
-      AssembledAdjoint assembled(problem.simulator, klu ? by_klu : nullptr);
+      AssembledAdjoint assembled(problem.horizon, klu ? by_klu : nullptr);
       const Gradient ours = assembled.gradient(trajectory, problem.objective);
       EXPECT_LT((ours.p - swept.p).norm(), 1e-10 * swept.p.norm()) << klu;
       EXPECT_LT((ours.u - swept.u).norm(), 1e-10 * swept.u.norm()) << klu;
@@ -119,7 +121,7 @@ Problem box_on_ground(const std::string& integrator, const Eigen::Vector3d& grav
                        .coefficients = {.kn = kn, .kt = 40.0, .mu = 0.3, .damping = 1e4}});
   builder.add_end_effector({.name = "corner", .link = box, .position = {0.1, 0.05, 0.02}});
   Problem problem = testing::make_problem(builder.build(), integrator, 0.005, 10);
-  problem.inputs.p = problem.simulator.parameters().nominal();
+  problem.inputs.p = problem.horizon.parameters().nominal();
   problem.inputs.q0.setZero();
   problem.inputs.q0[2] = -depth;
   problem.inputs.qdot0.setZero();
@@ -132,15 +134,15 @@ TEST_P(ContactGradientOfEveryIntegrator, PassesFromExactRest) {
   const double depth = 5.0 * 9.81 / (4.0 * kn);
   Problem problem =
       box_on_ground(GetParam(), {0.0, 0.0, -9.81}, kn, depth, Eigen::Vector3d::Zero());
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
   EXPECT_LT((trajectory.q_at_step(10) - problem.inputs.q0).norm(), 1e-13);
   const GradientCheckReport report = check_gradient(problem);
   EXPECT_TRUE(report.passed()) << report.table();
 }
 
 double value_of_inputs(Problem& problem, const Inputs& inputs) {
-  const Trajectory trajectory = problem.simulator.rollout(inputs).trajectory();
-  return problem.objective.value(problem.simulator.values(trajectory));
+  const Trajectory trajectory = simulate(problem.horizon, inputs).trajectory();
+  return problem.objective.value(read_values(problem.horizon, trajectory));
 }
 
 TEST_P(ContactGradientOfEveryIntegrator, IsFiniteAtGrazingAndThatOfTheTouchingSide) {
@@ -148,8 +150,8 @@ TEST_P(ContactGradientOfEveryIntegrator, IsFiniteAtGrazingAndThatOfTheTouchingSi
   // they would stay in it for 0.1 s.
   for (const Eigen::Vector3d& velocity : {Eigen::Vector3d(0.0, 0.0, 0.0), {0.7, -0.2, 0.0}}) {
     Problem problem = box_on_ground(GetParam(), Eigen::Vector3d::Zero(), 300.0, 0.0, velocity);
-    const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-    const Gradient g = gradient(problem.simulator, trajectory, problem.objective);
+    const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+    const Gradient g = gradient(problem.horizon, trajectory, problem.objective);
     EXPECT_TRUE(g.p.allFinite());
     EXPECT_TRUE(g.q0.allFinite());
     EXPECT_TRUE(g.qdot0.allFinite());

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/chart.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/input_vector.h"
@@ -16,8 +18,8 @@ using testing::InputClass;
 using testing::message_of;
 using testing::relative_gap;
 
-Simulator make_simulator(const Model& model, const std::string& integrator, double h, int steps,
-                         bool keep_factors = true) {
+Horizon make_horizon(const Model& model, const std::string& integrator, double h, int steps,
+                     bool keep_factors = true) {
   SimulationOptions options;
   options.integrator = integrator;
   options.h = h;
@@ -30,9 +32,9 @@ Simulator make_simulator(const Model& model, const std::string& integrator, doub
 const std::vector<double> kVCurve = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
 
 /// Inputs of which none is zero and none is nominal.
-Inputs random_inputs(const Simulator& simulator, unsigned seed) {
+Inputs random_inputs(const Horizon& horizon, unsigned seed) {
   testing::Random random(seed);
-  Inputs inputs = simulator.nominal_inputs();
+  Inputs inputs = horizon.nominal_inputs();
   inputs.p += random.vector(inputs.p.size(), 0.01);
   inputs.u = 0.9 * random.matrix(inputs.u.rows(), inputs.u.cols());
   inputs.q0 = random.vector(inputs.q0.size(), 0.4);
@@ -41,15 +43,15 @@ Inputs random_inputs(const Simulator& simulator, unsigned seed) {
 }
 
 /// An objective with partials in q̄, q̇̄, v̄, u and p.
-Objective full_objective(const Simulator& simulator) {
-  const int dof = simulator.model().dof();
+Objective full_objective(const Horizon& horizon) {
+  const int dof = horizon.model().dof();
   testing::Random random(11);
   Objective objective(squared_variables(0.3));
-  objective.add(tracking(random.matrix(dof, simulator.options().steps), 0.7))
+  objective.add(tracking(random.matrix(dof, horizon.options().steps), 0.7))
       .add(terminal_state(random.vector(dof), random.vector(dof), 0.4, 0.2))
       .add(squared_velocity(0.5))
       .add(effort(2.0))
-      .add(testing::near_parameters(simulator.parameters().nominal(), 1.3));
+      .add(testing::near_parameters(horizon.parameters().nominal(), 1.3));
   return objective;
 }
 
@@ -57,43 +59,40 @@ class GradientOfEveryIntegrator : public ::testing::TestWithParam<std::string> {
 
 TEST_P(GradientOfEveryIntegrator, AgreesWithCentralDifferencesInEveryClassOnEveryJoint) {
   const Model model = testing::random_model(21);
-  Simulator simulator = make_simulator(model, GetParam(), 0.01, 5);
-  const Inputs inputs = random_inputs(simulator, 1);
-  const Objective objective = full_objective(simulator);
-  const Gradient exact = gradient(simulator, simulator.rollout(inputs).trajectory(), objective);
-  EXPECT_NEAR(exact.value, testing::objective_of(simulator, objective, inputs),
-              1e-14 * exact.value);
-  const std::vector<InputClass> classes = testing::input_classes(simulator, inputs);
+  Horizon horizon = make_horizon(model, GetParam(), 0.01, 5);
+  const Inputs inputs = random_inputs(horizon, 1);
+  const Objective objective = full_objective(horizon);
+  const Gradient exact = gradient(horizon, simulate(horizon, inputs).trajectory(), objective);
+  EXPECT_NEAR(exact.value, testing::objective_of(horizon, objective, inputs), 1e-14 * exact.value);
+  const std::vector<InputClass> classes = testing::input_classes(horizon, inputs);
   // All kinds but the three of contact and sizes, which this model has none of, and three more.
   EXPECT_EQ(classes.size(), parameter_kinds().size() - 4 + 3);
   for (const InputClass& entries : classes) {
-    EXPECT_LT(testing::gap_to_differences(simulator, objective, inputs, exact, entries, {1e-4}),
-              1e-6)
+    EXPECT_LT(testing::gap_to_differences(horizon, objective, inputs, exact, entries, {1e-4}), 1e-6)
         << entries.name;
   }
 }
 
 TEST_P(GradientOfEveryIntegrator, LeavesATaylorRemainderOfSecondOrderInEveryClass) {
   const Model model = testing::random_model(22);
-  Simulator simulator = make_simulator(model, GetParam(), 0.01, 5);
-  const Inputs inputs = random_inputs(simulator, 2);
-  const Objective objective = full_objective(simulator);
-  const Gradient exact = gradient(simulator, simulator.rollout(inputs).trajectory(), objective);
-  for (const InputClass& entries : testing::input_classes(simulator, inputs)) {
-    const double slope =
-        testing::taylor_slope_in(simulator, objective, inputs, exact, entries, 0.03);
+  Horizon horizon = make_horizon(model, GetParam(), 0.01, 5);
+  const Inputs inputs = random_inputs(horizon, 2);
+  const Objective objective = full_objective(horizon);
+  const Gradient exact = gradient(horizon, simulate(horizon, inputs).trajectory(), objective);
+  for (const InputClass& entries : testing::input_classes(horizon, inputs)) {
+    const double slope = testing::taylor_slope_in(horizon, objective, inputs, exact, entries, 0.03);
     EXPECT_NEAR(slope, 2.0, 0.1) << entries.name;
   }
 }
 
 TEST_P(GradientOfEveryIntegrator, IsTheSameWithAndWithoutKeptFactors) {
   const Model model = testing::random_model(23);
-  Simulator keeping = make_simulator(model, GetParam(), 0.01, 10);
-  Simulator forgetting = make_simulator(model, GetParam(), 0.01, 10, false);
+  Horizon keeping = make_horizon(model, GetParam(), 0.01, 10);
+  Horizon forgetting = make_horizon(model, GetParam(), 0.01, 10, false);
   const Inputs inputs = random_inputs(keeping, 3);
   const Objective objective = full_objective(keeping);
-  const Trajectory trajectory = keeping.rollout(inputs).trajectory();
-  const Trajectory bare = forgetting.rollout(inputs).trajectory();
+  const Trajectory trajectory = simulate(keeping, inputs).trajectory();
+  const Trajectory bare = simulate(forgetting, inputs).trajectory();
   EXPECT_EQ(static_cast<int>(trajectory.factors.size()), trajectory.timeline.stage_count());
   EXPECT_TRUE(bare.factors.empty());
   AdjointSweep with(keeping);
@@ -109,29 +108,29 @@ TEST_P(GradientOfEveryIntegrator, IsTheSameWithAndWithoutKeptFactors) {
 /// A body that spins fast enough to leave its first chart.
 struct Tumbling {
   Tumbling(const std::string& integrator, const Eigen::Vector3d& r0)
-      : simulator(make_simulator(testing::single_body(Free3dExpJoint{}, testing::kGravity, 0.2),
-                                 integrator, 0.02, 60)),
-        inputs(simulator.nominal_inputs()),
+      : horizon(make_horizon(testing::single_body(Free3dExpJoint{}, testing::kGravity, 0.2),
+                             integrator, 0.02, 60)),
+        inputs(horizon.nominal_inputs()),
         objective(squared_variables()) {
     inputs.q0 << 0.1, -0.2, 0.3, r0;
     inputs.qdot0 << 0.4, 0.5, 1.0, 6.0, -8.0, 5.0;
     objective.add(squared_velocity(0.01))
         .add(testing::final_variables(Eigen::Vector3d(1.0, 2.0, 3.0)));
   }
-  Simulator simulator;
+  Horizon horizon;
   Inputs inputs;
   Objective objective;
 };
 
 void expect_exact(Tumbling& scene) {
-  const Trajectory trajectory = scene.simulator.rollout(scene.inputs).trajectory();
-  const Gradient exact = gradient(scene.simulator, trajectory, scene.objective);
-  for (const InputClass& entries : testing::input_classes(scene.simulator, scene.inputs)) {
-    EXPECT_LT(testing::gap_to_differences(scene.simulator, scene.objective, scene.inputs, exact,
+  const Trajectory trajectory = simulate(scene.horizon, scene.inputs).trajectory();
+  const Gradient exact = gradient(scene.horizon, trajectory, scene.objective);
+  for (const InputClass& entries : testing::input_classes(scene.horizon, scene.inputs)) {
+    EXPECT_LT(testing::gap_to_differences(scene.horizon, scene.objective, scene.inputs, exact,
                                           entries, kVCurve),
               1e-6)
         << entries.name;
-    EXPECT_NEAR(testing::taylor_slope_in(scene.simulator, scene.objective, scene.inputs, exact,
+    EXPECT_NEAR(testing::taylor_slope_in(scene.horizon, scene.objective, scene.inputs, exact,
                                          entries, 0.03),
                 2.0, 0.1)
         << entries.name;
@@ -140,7 +139,7 @@ void expect_exact(Tumbling& scene) {
 
 TEST_P(GradientOfEveryIntegrator, IsExactThroughAChangeOfChart) {
   Tumbling scene(GetParam(), {0.3, 0.2, -0.4});
-  const Trajectory trajectory = scene.simulator.rollout(scene.inputs).trajectory();
+  const Trajectory trajectory = simulate(scene.horizon, scene.inputs).trajectory();
   ASSERT_GE(trajectory.chart_switches.size(), 1U);
   EXPECT_LT(trajectory.chart_switches.back().stage, trajectory.timeline.last_stage() - 3);
   expect_exact(scene);
@@ -148,7 +147,7 @@ TEST_P(GradientOfEveryIntegrator, IsExactThroughAChangeOfChart) {
 
 TEST_P(GradientOfEveryIntegrator, IsExactWhereTheInitialStateIsBeyondTheChart) {
   Tumbling scene(GetParam(), Eigen::Vector3d(2.0, -1.0, 2.0) / 3.0 * (kChartLimit + 0.4));
-  const Trajectory trajectory = scene.simulator.rollout(scene.inputs).trajectory();
+  const Trajectory trajectory = simulate(scene.horizon, scene.inputs).trajectory();
   ASSERT_GE(trajectory.chart_switches.size(), 1U);
   EXPECT_EQ(trajectory.chart_switches.front().stage, 0);
   expect_exact(scene);
@@ -159,8 +158,8 @@ INSTANTIATE_TEST_SUITE_P(All, GradientOfEveryIntegrator,
                          [](const auto& run) { return run.param; });
 
 /// Inputs that swing the stiff pendulum into its limit.
-Inputs swing(const Simulator& simulator) {
-  Inputs inputs = simulator.nominal_inputs();
+Inputs swing(const Horizon& horizon) {
+  Inputs inputs = horizon.nominal_inputs();
   inputs.q0 << 0.15, 0.1;
   inputs.qdot0 << 3.0, -0.5;
   inputs.u.setConstant(0.3);
@@ -177,19 +176,19 @@ TEST_P(GradientAfterHalvedSteps, StillAgreesWithCentralDifferences) {
   options.steps = 12;
   options.newton.max_iter = 3;  // too few at the limit's onset with the whole step
   const Model model = testing::stiff_pendulum(implicit_motor);
-  Simulator simulator(model, ParameterSet::all(model), options);
-  const Inputs inputs = swing(simulator);
-  const Rollout rollout = simulator.rollout(inputs);
+  Horizon horizon(model, ParameterSet::all(model), options);
+  const Inputs inputs = swing(horizon);
+  const Rollout rollout = simulate(horizon, inputs);
   const Trajectory& trajectory = rollout.trajectory();
-  const int stages = simulator.rollout(simulator.nominal_inputs()).partial().timeline.stage_count();
+  const int stages = simulate(horizon, horizon.nominal_inputs()).partial().timeline.stage_count();
   EXPECT_GT(trajectory.timeline.stage_count(), stages);
   EXPECT_LT(rollout.report().smallest_h, options.h);
   EXPECT_GT(trajectory.q.row(0).maxCoeff(), 0.2);
   Objective objective(squared_variables());
   objective.add(squared_velocity());
-  const Gradient exact = gradient(simulator, trajectory, objective);
-  for (const InputClass& entries : testing::input_classes(simulator, inputs)) {
-    EXPECT_LT(testing::gap_to_differences(simulator, objective, inputs, exact, entries, kVCurve),
+  const Gradient exact = gradient(horizon, trajectory, objective);
+  for (const InputClass& entries : testing::input_classes(horizon, inputs)) {
+    EXPECT_LT(testing::gap_to_differences(horizon, objective, inputs, exact, entries, kVCurve),
               1e-6)
         << entries.name;
   }
@@ -200,12 +199,12 @@ INSTANTIATE_TEST_SUITE_P(All, GradientAfterHalvedSteps,
 
 TEST(AdjointSweep, PullsBackGivenPartials) {
   const Model model = testing::double_pendulum();
-  Simulator simulator = make_simulator(model, "bdf2", 0.01, 20);
-  const Inputs inputs = random_inputs(simulator, 4);
-  const Trajectory trajectory = simulator.rollout(inputs).trajectory();
-  const Objective objective = full_objective(simulator);
-  const TrajectoryValues values = simulator.values(trajectory);
-  AdjointSweep sweep(simulator);
+  Horizon horizon = make_horizon(model, "bdf2", 0.01, 20);
+  const Inputs inputs = random_inputs(horizon, 4);
+  const Trajectory trajectory = simulate(horizon, inputs).trajectory();
+  const Objective objective = full_objective(horizon);
+  const TrajectoryValues values = read_values(horizon, trajectory);
+  AdjointSweep sweep(horizon);
   const Gradient whole = sweep.gradient(trajectory, objective);
   const Gradient given = sweep.pull_back(trajectory, objective.partials(values));
   EXPECT_EQ(flatten(whole), flatten(given));
@@ -219,11 +218,11 @@ TEST(AdjointSweep, PullsBackGivenPartials) {
 }
 
 TEST_P(GradientOfEveryIntegrator, NeedsNoNewFactorsOnASmoothMotion) {
-  Simulator simulator = make_simulator(testing::double_pendulum(), GetParam(), 0.005, 100);
-  const Inputs inputs = random_inputs(simulator, 5);
-  AdjointSweep sweep(simulator);
-  const Trajectory trajectory = simulator.rollout(inputs).trajectory();
-  const Gradient gradient = sweep.gradient(trajectory, full_objective(simulator));
+  Horizon horizon = make_horizon(testing::double_pendulum(), GetParam(), 0.005, 100);
+  const Inputs inputs = random_inputs(horizon, 5);
+  AdjointSweep sweep(horizon);
+  const Trajectory trajectory = simulate(horizon, inputs).trajectory();
+  const Gradient gradient = sweep.gradient(trajectory, full_objective(horizon));
   EXPECT_GT(gradient.value, 0.0);
   EXPECT_EQ(sweep.refactorized(), 0);
   EXPECT_LT(sweep.worst_residual(), 1e-14);
@@ -231,13 +230,14 @@ TEST_P(GradientOfEveryIntegrator, NeedsNoNewFactorsOnASmoothMotion) {
 
 TEST(AdjointSweep, RefusesASingularBlock) {
   const Model model = testing::slider(0.0, testing::kGravity);
-  Simulator simulator = make_simulator(model, "bdf1", 0.5, 3);
-  Trajectory trajectory = simulator.rollout(simulator.nominal_inputs()).trajectory();
+  Horizon horizon = make_horizon(model, "bdf1", 0.5, 3);
+  Trajectory trajectory = simulate(horizon, horizon.nominal_inputs()).trajectory();
   // A stiffness that cancels the inertia: 2 / h² + k = 0, exactly.
   trajectory.factors.clear();
-  trajectory.inputs.p[simulator.parameters().find("joint.slide.stiffness")] = -8.0;
+  trajectory.inputs.p[horizon.parameters().find("joint.slide.stiffness")] = -8.0;
+  trajectory.mechanism = horizon.mechanism(trajectory.inputs.p);
   const auto sweep = [&] {
-    static_cast<void>(gradient(simulator, trajectory, Objective(squared_final_position())));
+    static_cast<void>(gradient(horizon, trajectory, Objective(squared_final_position())));
   };
   const std::string message = message_of<NumericalFailure>(sweep);
   EXPECT_NE(message.find("adjoint: the block of stage 3 (t = 1.5) is singular"), std::string::npos)

@@ -4,6 +4,8 @@
 
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/derivatives/tangent.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/solvers/linear/klu.h"
 #include "tests/support/small_problems.h"
 
@@ -18,16 +20,16 @@ class LinearizationOfEveryIntegrator : public ::testing::TestWithParam<std::stri
 TEST_P(LinearizationOfEveryIntegrator, GivesTheAdjointGradientByItsMatricesAlone) {
   for (const bool spinning : {false, true}) {
     Problem problem = spinning ? spinning_problem(GetParam()) : small_problem(GetParam());
-    Simulator& simulator = problem.simulator;
-    const Trajectory trajectory = simulator.rollout(problem.inputs).trajectory();
+    const Horizon& horizon = problem.horizon;
+    const Trajectory trajectory = simulate(horizon, problem.inputs).trajectory();
     // An objective of coordinates alone, so that ȳ is simply ∂Ψ/∂q̄.
-    TrajectoryPartials partials(simulator.values(trajectory));
+    TrajectoryPartials partials(read_values(horizon, trajectory));
     partials.q.setRandom();
-    const Gradient swept = AdjointSweep(simulator).pull_back(trajectory, partials);
+    const Gradient swept = AdjointSweep(horizon).pull_back(trajectory, partials);
 
-    Linearizer linearizer(simulator);
+    Linearizer linearizer(horizon);
     const Linearization& system = linearizer.linearize(trajectory);
-    const int n = simulator.model().dof();
+    const int n = horizon.model().dof();
     Eigen::VectorXd y_bar = Eigen::VectorXd::Zero(system.H.matrix().rows());
     for (int k = 1; k <= trajectory.step_count(); ++k) {
       y_bar.segment((trajectory.timeline.step_end(k) - 1) * n, n) = partials.q.col(k);
@@ -52,12 +54,12 @@ TEST_P(LinearizationOfEveryIntegrator, GivesTheAdjointGradientByItsMatricesAlone
 
 TEST_P(LinearizationOfEveryIntegrator, LaysItsPatternOutOnce) {
   Problem problem = small_problem(GetParam());
-  Linearizer linearizer(problem.simulator);
+  Linearizer linearizer(problem.horizon);
   const double* values = nullptr;
   for (int i = 0; i < 5; ++i) {
     problem.inputs.q0[0] += 0.01;
     const auto& system =
-        linearizer.linearize(problem.simulator.rollout(problem.inputs).trajectory());
+        linearizer.linearize(simulate(problem.horizon, problem.inputs).trajectory());
     if (i > 0) {
       EXPECT_EQ(system.H.matrix().valuePtr(), values);
     }
@@ -68,10 +70,10 @@ TEST_P(LinearizationOfEveryIntegrator, LaysItsPatternOutOnce) {
 
 TEST_P(LinearizationOfEveryIntegrator, IsBlockBandedAndLowerTriangular) {
   Problem problem = small_problem(GetParam());
-  Linearizer linearizer(problem.simulator);
-  const auto& system = linearizer.linearize(problem.simulator.rollout(problem.inputs).trajectory());
+  Linearizer linearizer(problem.horizon);
+  const auto& system = linearizer.linearize(simulate(problem.horizon, problem.inputs).trajectory());
   const auto& H = system.H.matrix();
-  const int n = problem.simulator.model().dof();
+  const int n = problem.horizon.model().dof();
   int band = 0;
   for (int c = 0; c < H.cols(); ++c) {
     for (solvers::SparseMatrix::InnerIterator it(H, c); it; ++it) {
@@ -86,11 +88,11 @@ TEST_P(LinearizationOfEveryIntegrator, IsBlockBandedAndLowerTriangular) {
 
 TEST(Linearization, KeepsParametersToTheRowsTheyOwn) {
   Problem problem = small_problem("bdf2");
-  Linearizer linearizer(problem.simulator);
-  const auto& system = linearizer.linearize(problem.simulator.rollout(problem.inputs).trajectory());
-  const Model& model = problem.simulator.model();
+  Linearizer linearizer(problem.horizon);
+  const auto& system = linearizer.linearize(simulate(problem.horizon, problem.inputs).trajectory());
+  const Model& model = problem.horizon.model();
   const int slider = model.coordinates_of_link(model.find_joint("slider")).begin;
-  const int i = problem.simulator.parameters().find("joint.slider.stiffness");
+  const int i = problem.horizon.parameters().find("joint.slider.stiffness");
   int entries = 0;
   for (solvers::SparseMatrix::InnerIterator it(system.dg_dp, i); it; ++it) {
     EXPECT_EQ(static_cast<int>(it.row()) % model.dof(), slider);

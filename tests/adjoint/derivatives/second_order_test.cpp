@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "hbar/adjoint/derivatives/tangent.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/input_vector.h"
 #include "tests/support/small_problems.h"
@@ -44,16 +46,16 @@ class SecondOrderOf : public ::testing::TestWithParam<NamedProblem> {};
 /// Differences of gradients against products, and the remainder of the quadratic model.
 TEST_P(SecondOrderOf, ProductsAreDerivativesOfGradients) {
   Problem problem = GetParam().make();
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-  HessianProduct hessian(problem.simulator, problem.objective);
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  HessianProduct hessian(problem.horizon, problem.objective);
   const Gradient gradient = hessian.set_point(trajectory);
   const Eigen::VectorXd x = flatten(problem.inputs);
   const Eigen::VectorXd direction = some_direction(problem.inputs, 7);
   const Gradient product = hessian.along(unflatten(direction, problem.inputs));
   const auto gradient_at = [&](double e) {
     const Inputs moved = unflatten(x + e * direction, problem.inputs);
-    const Trajectory there = problem.simulator.rollout(moved).trajectory();
-    return flatten(hbar::gradient(problem.simulator, there, problem.objective));
+    const Trajectory there = simulate(problem.horizon, moved).trajectory();
+    return flatten(hbar::gradient(problem.horizon, there, problem.objective));
   };
   double gap = 1.0;
   for (const double e : {1e-3, 1e-4, 1e-5}) {
@@ -67,7 +69,7 @@ TEST_P(SecondOrderOf, ProductsAreDerivativesOfGradients) {
   EXPECT_NEAR(product.value, 0.5 * curvature, 1e-12 * std::abs(curvature));
   std::vector<double> remainders;
   for (double e = 1e-2; e > 1e-5; e /= 2.0) {
-    const double there = testing::objective_of(problem.simulator, problem.objective,
+    const double there = testing::objective_of(problem.horizon, problem.objective,
                                                unflatten(x + e * direction, problem.inputs));
     const double remainder = std::abs(there - gradient.value - e * slope - 0.5 * e * e * curvature);
     if (remainder < 1e-12 * std::abs(gradient.value)) {
@@ -82,8 +84,8 @@ TEST_P(SecondOrderOf, ProductsAreDerivativesOfGradients) {
 
 TEST_P(SecondOrderOf, TheHessianIsSymmetric) {
   Problem problem = GetParam().make();
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-  HessianProduct hessian(problem.simulator, problem.objective);
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  HessianProduct hessian(problem.horizon, problem.objective);
   static_cast<void>(hessian.set_point(trajectory));
   const Eigen::VectorXd a = some_direction(problem.inputs, 1);
   const Eigen::VectorXd b = some_direction(problem.inputs, 2);
@@ -97,11 +99,11 @@ INSTANTIATE_TEST_SUITE_P(EveryProblem, SecondOrderOf, ::testing::ValuesIn(second
 
 TEST(SecondOrder, OfConstantWeightsIsCurvatureAlone) {
   Problem problem = testing::small_problem("bdf1");
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-  TrajectoryPartials weights(problem.simulator.values(trajectory));
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  TrajectoryPartials weights(read_values(problem.horizon, trajectory));
   weights.u.setConstant(0.7);
   weights.p.setConstant(-0.3);
-  SecondOrderSweep sweep(problem.simulator);
+  SecondOrderSweep sweep(problem.horizon);
   // Inputs themselves are values, and no curvature comes of them.
   const Gradient gradient = sweep.set_point(trajectory, weights);
   EXPECT_TRUE(gradient.u.isConstant(0.7, 0.0));
@@ -112,18 +114,18 @@ TEST(SecondOrder, OfConstantWeightsIsCurvatureAlone) {
 
 TEST(SecondOrder, TangentsAreThoseOfTheAssembledSystem) {
   Problem problem = testing::small_problem("bdf2");
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
   const Inputs direction = unflatten(some_direction(problem.inputs, 4), problem.inputs);
-  SecondOrderSweep sweep(problem.simulator);
+  SecondOrderSweep sweep(problem.horizon);
   static_cast<void>(
-      sweep.set_point(trajectory, TrajectoryPartials(problem.simulator.values(trajectory))));
+      sweep.set_point(trajectory, TrajectoryPartials(read_values(problem.horizon, trajectory))));
   const ValueTangent& tangent = sweep.push_forward(direction);
-  Directions along = Directions::zero(problem.simulator, 1);
+  Directions along = Directions::zero(problem.horizon, 1);
   along.p = direction.p;
   along.u = direction.u.reshaped();
   along.q0 = direction.q0;
   along.qdot0 = direction.qdot0;
-  const Tangents expected = TangentSweep(problem.simulator).push_forward(trajectory, along);
+  const Tangents expected = TangentSweep(problem.horizon).push_forward(trajectory, along);
   EXPECT_LT(testing::relative_gap(Eigen::VectorXd(tangent.q.reshaped()), expected.q.col(0)), 1e-11);
   EXPECT_LT(testing::relative_gap(Eigen::VectorXd(tangent.qdot.reshaped()), expected.qdot.col(0)),
             1e-11);
@@ -132,19 +134,19 @@ TEST(SecondOrder, TangentsAreThoseOfTheAssembledSystem) {
 
 TEST(SecondOrder, WithoutCurvatureIsExactWhereTheMotionIsTheTarget) {
   Problem problem = testing::small_problem("bdf2");
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-  const TrajectoryValues values = problem.simulator.values(trajectory);
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  const TrajectoryValues values = read_values(problem.horizon, trajectory);
   Objective objective(tracking(values.q.rightCols(values.q.cols() - 1)));
   objective.add(variable_tracking(values.v.rightCols(values.v.cols() - 1), 0.3));
   const Inputs direction = unflatten(some_direction(problem.inputs, 5), problem.inputs);
-  HessianProduct there(problem.simulator, objective);
+  HessianProduct there(problem.horizon, objective);
   static_cast<void>(there.set_point(trajectory));
   const Eigen::VectorXd exact = flatten(there.along(direction));
   const Eigen::VectorXd gauss_newton =
       flatten(there.along(direction, solvers::HessianKind::kGaussNewton));
   EXPECT_LT(testing::relative_gap(gauss_newton, exact), 1e-9);
 
-  HessianProduct elsewhere(problem.simulator, problem.objective);
+  HessianProduct elsewhere(problem.horizon, problem.objective);
   static_cast<void>(elsewhere.set_point(trajectory));
   const Gradient product = elsewhere.along(direction, solvers::HessianKind::kGaussNewton);
   EXPECT_GT(product.value, 0.0);
@@ -153,8 +155,8 @@ TEST(SecondOrder, WithoutCurvatureIsExactWhereTheMotionIsTheTarget) {
 
 TEST(SecondOrder, RefusesADirectionOfAnotherShape) {
   Problem problem = testing::small_problem("bdf1");
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-  HessianProduct hessian(problem.simulator, problem.objective);
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  HessianProduct hessian(problem.horizon, problem.objective);
   static_cast<void>(hessian.set_point(trajectory));
   Inputs direction = problem.inputs;
   direction.q0.conservativeResize(1);

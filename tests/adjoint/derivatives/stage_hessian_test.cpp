@@ -46,7 +46,7 @@ class EveryStagesHessian : public ::testing::TestWithParam<unsigned> {
   }
   [[nodiscard]] OutputRows<double> random_rows() {
     return {random.vector(model.variable_count()), random.vector(model.tactile_count()),
-            random.vector(simulator.measured_count())};
+            random.vector(horizon.measured_count())};
   }
 
   // Where each part stands in x = (q, q̇, a, start q, start q̇, u, d).
@@ -95,7 +95,7 @@ class EveryStagesHessian : public ::testing::TestWithParam<unsigned> {
       add_parameter_gradient<Dual>(mechanism, set, values, stage, point, weights, 1.0, by_p);
     }
     if (y != nullptr) {
-      InstantOutputs<Dual> outputs(model, simulator.options().measurements);
+      InstantOutputs<Dual> outputs(model, horizon.options().measurements);
       outputs.pull_back(mechanism, set, values, outputs.motion_at(mechanism, point.q, point.qdot),
                         point.q, point.qdot, point.u,
                         {y->v.cast<Dual>(), y->tactile.cast<Dual>(), y->measured.cast<Dual>()},
@@ -156,12 +156,12 @@ class EveryStagesHessian : public ::testing::TestWithParam<unsigned> {
   const ParameterSet set = ParameterSet::named(
       model, {"joint.j3", "joint.j6", "body.b4", "body.b9", "motor", "contact"});
   Random random{GetParam()};
-  Simulator simulator{model, set, options_of_model(model)};
+  Horizon horizon{model, set, options_of_model(model)};
   const Eigen::Index n = model.dof();
   const Eigen::Index controls = model.control_count();
   const VectorXd p = testing::random_parameters(set, random);
   const MatrixXd map_jacobian = 0.1 * random.matrix(set.size(), kBentDesigns);
-  StageHessian hessian{simulator, kBentDesigns};
+  StageHessian hessian{horizon, kBentDesigns};
   Trajectory trajectory;
 };
 
@@ -170,7 +170,7 @@ class EveryStagesHessian : public ::testing::TestWithParam<unsigned> {
 TEST_P(EveryStagesHessian, IsThatOfDualGradientsAndNothingIsLeftOut) {
   const int stage = trajectory.timeline.step_end(2);
   StagePoint<double> point(model);
-  simulator.set_point(trajectory, stage, point);
+  History(model).set_point(trajectory, stage, point);
   const VectorXd z = random.vector(n);
   const OutputRows<double> y = random_rows();
   hessian.evaluate(trajectory, stage, z, &y);
@@ -189,7 +189,7 @@ TEST_P(EveryStagesHessian, IsThatOfDualGradientsAndNothingIsLeftOut) {
 TEST_P(EveryStagesHessian, ReadsNoOutputsWithinAStep) {
   const int stage = 1;
   StagePoint<double> point(model);
-  simulator.set_point(trajectory, stage, point);
+  History(model).set_point(trajectory, stage, point);
   const VectorXd z = random.vector(n);
   hessian.evaluate(trajectory, stage, z, nullptr);
   expect_exact(point, z, nullptr);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/trajectory_residual.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
 #include "tests/support/small_problems.h"
@@ -19,15 +21,15 @@ class StageWeightsOfEveryIntegrator : public ::testing::TestWithParam<std::strin
 
 /// Ψ as a function of coordinates and the initial rate alone: its weights are its gradient.
 void expect_gradient(Problem problem) {
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-  TrajectoryResidual rates(problem.simulator);
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  TrajectoryResidual rates(problem.horizon);
   const auto value_of = [&](Trajectory at) {
     rates.evaluate(at);
-    return problem.objective.value(problem.simulator.values(at));
+    return problem.objective.value(read_values(problem.horizon, at));
   };
-  const TrajectoryValues values = problem.simulator.values(trajectory);
+  const TrajectoryValues values = read_values(problem.horizon, trajectory);
   const StageWeights weights =
-      stage_weights(problem.simulator, trajectory, problem.objective.partials(values));
+      stage_weights(problem.horizon, trajectory, problem.objective.partials(values));
   for (const unsigned seed : {1U, 2U, 3U}) {
     Random random(seed);
     const Eigen::MatrixXd dq = random.matrix(trajectory.q.rows(), trajectory.q.cols());

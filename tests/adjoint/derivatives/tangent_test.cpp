@@ -5,6 +5,8 @@
 #include <random>
 
 #include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/solvers/linear/klu.h"
 #ifdef HBAR_HAVE_UMFPACK
 #include "hbar/solvers/linear/umfpack.h"
@@ -17,10 +19,10 @@ namespace {
 using testing::small_problem;
 using testing::spinning_problem;
 
-Directions random_directions(const Simulator& simulator, Eigen::Index count) {
+Directions random_directions(const Horizon& horizon, Eigen::Index count) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  Directions out = Directions::zero(simulator, count);
+  Directions out = Directions::zero(horizon, count);
   for (Eigen::MatrixXd* part : {&out.p, &out.u, &out.q0, &out.qdot0}) {
     *part = part->unaryExpr([&](double) { return uniform(random); });
   }
@@ -42,7 +44,7 @@ class TangentOfEveryIntegrator : public ::testing::TestWithParam<Case> {
  protected:
   Problem problem_ = std::get<1>(GetParam()) ? spinning_problem(std::get<0>(GetParam()))
                                              : small_problem(std::get<0>(GetParam()));
-  Trajectory trajectory_ = problem_.simulator.rollout(problem_.inputs).trajectory();
+  Trajectory trajectory_ = simulate(problem_.horizon, problem_.inputs).trajectory();
 };
 
 TEST_P(TangentOfEveryIntegrator, ChangesChartOnlyWhereItSpins) {
@@ -50,16 +52,16 @@ TEST_P(TangentOfEveryIntegrator, ChangesChartOnlyWhereItSpins) {
 }
 
 TEST_P(TangentOfEveryIntegrator, HasTangentsThatAreDerivatives) {
-  Simulator& simulator = problem_.simulator;
-  Directions d = random_directions(simulator, 2);
+  const Horizon& horizon = problem_.horizon;
+  Directions d = random_directions(horizon, 2);
   d.p *= 1e-2;  // masses and moments stay physical
-  const Tangents tangents = TangentSweep(simulator).push_forward(trajectory_, d);
+  const Tangents tangents = TangentSweep(horizon).push_forward(trajectory_, d);
   for (Eigen::Index i = 0; i < d.count(); ++i) {
     const auto difference = [&](double step) {
       const TrajectoryValues a =
-          simulator.values(simulator.rollout(moved(problem_.inputs, d, i, step)).trajectory());
+          read_values(horizon, simulate(horizon, moved(problem_.inputs, d, i, step)).trajectory());
       const TrajectoryValues b =
-          simulator.values(simulator.rollout(moved(problem_.inputs, d, i, -step)).trajectory());
+          read_values(horizon, simulate(horizon, moved(problem_.inputs, d, i, -step)).trajectory());
       Eigen::VectorXd out(a.q.size() + a.qdot.size() + a.v.size());
       out << (a.q - b.q).reshaped(), (a.qdot - b.qdot).reshaped(), (a.v - b.v).reshaped();
       return Eigen::VectorXd(out / (2.0 * step));
@@ -72,13 +74,13 @@ TEST_P(TangentOfEveryIntegrator, HasTangentsThatAreDerivatives) {
 }
 
 TEST_P(TangentOfEveryIntegrator, AgreesWithTheAdjointToRounding) {
-  Simulator& simulator = problem_.simulator;
-  const TrajectoryValues values = simulator.values(trajectory_);
+  const Horizon& horizon = problem_.horizon;
+  const TrajectoryValues values = read_values(horizon, trajectory_);
   const TrajectoryPartials partials = problem_.objective.partials(values);
-  AdjointSweep sweep(simulator);
+  AdjointSweep sweep(horizon);
   const Gradient g = sweep.pull_back(trajectory_, partials);
-  const Directions d = random_directions(simulator, 5);
-  TangentSweep tangent_sweep(simulator);
+  const Directions d = random_directions(horizon, 5);
+  TangentSweep tangent_sweep(horizon);
   const Tangents tangents = tangent_sweep.push_forward(trajectory_, d);
   for (Eigen::Index i = 0; i < d.count(); ++i) {
     const double reverse = g.p.dot(d.p.col(i)) + g.u.reshaped().dot(d.u.col(i)) +
@@ -89,9 +91,9 @@ TEST_P(TangentOfEveryIntegrator, AgreesWithTheAdjointToRounding) {
 }
 
 TEST_P(TangentOfEveryIntegrator, HasTheSameTangentsFromEverySolver) {
-  Simulator& simulator = problem_.simulator;
-  const Directions d = random_directions(simulator, 3);
-  const Tangents by_blocks = TangentSweep(simulator).push_forward(trajectory_, d);
+  const Horizon& horizon = problem_.horizon;
+  const Directions d = random_directions(horizon, 3);
+  const Tangents by_blocks = TangentSweep(horizon).push_forward(trajectory_, d);
   const std::vector<solvers::SolverFactory> others = {
       [](const auto& options, const auto&) { return solvers::make_klu(options); },
 #ifdef HBAR_HAVE_UMFPACK
@@ -99,7 +101,7 @@ TEST_P(TangentOfEveryIntegrator, HasTheSameTangentsFromEverySolver) {
 #endif
   };
   for (const solvers::SolverFactory& factory : others) {
-    TangentSweep sweep(simulator, factory);
+    TangentSweep sweep(horizon, factory);
     const Tangents tangents = sweep.push_forward(trajectory_, d);
     const std::string name = sweep.solver().name();
     EXPECT_LT((tangents.q - by_blocks.q).norm(), 1e-11 * by_blocks.q.norm()) << name;

@@ -24,19 +24,19 @@ struct DeclaringSubject {
 
 /// A row for every number of the trajectory, some of measurements of every kind.
 TrajectoryProblem reading_everything(TrajectoryProblem problem, std::vector<Measurement> more) {
-  SimulationOptions options = problem.simulator.options();
+  SimulationOptions options = problem.horizon.options();
   options.steps = 4;
   options.measurements = std::move(more);
-  problem.simulator = Simulator(problem.simulator.model(), problem.simulator.parameters(), options);
+  problem.horizon = Horizon(problem.horizon.model(), problem.horizon.parameters(), options);
   problem.objective = Objective(squared_velocity(0.1));
-  problem.constraints = {testing::every_number(problem.simulator)};
+  problem.constraints = {testing::every_number(problem.horizon)};
   problem.controls.start = problem.controls.start.leftCols(2).eval();
   return problem;
 }
 
 TrajectoryProblem reading_small_model(const std::string& integrator, bool free_state) {
   TrajectoryProblem problem = testing::small_transcription(integrator, 4, free_state);
-  const Model model = problem.simulator.model();
+  const Model model = problem.horizon.model();
   const int hand = model.find_link("hand");
   const int weight = model.find_link("weight");
   const Plane floor{{0.0, 0.0, -1.0}, Eigen::Vector3d(0.1, 0.2, 0.9).normalized()};
@@ -96,8 +96,8 @@ TEST_P(DeclaredDependence, LeavesNothingOut) {
 /// nothing; patterns know coordinates, not what sort they are.)
 TEST_P(DeclaredDependence, DeclaresNoCoordinateOrControlInVain) {
   AllAtOnce whole(GetParam().make(), kDeclaring);
-  if (whole.problem().simulator.model().contact_count() > 0) {
-    EXPECT_EQ(whole.problem().simulator.measured_count(), 9);  // points that touch nothing read 0
+  if (whole.problem().horizon.model().contact_count() > 0) {
+    EXPECT_EQ(whole.problem().horizon.measured_count(), 9);  // points that touch nothing read 0
     return;
   }
   const std::vector<std::string>& rows = whole.constraint_limits().names;

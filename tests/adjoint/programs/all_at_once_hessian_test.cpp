@@ -24,10 +24,10 @@ struct BendingSubject {
 /// Few steps, rows of every sort of number that bends, and a motor's gain among the parameters.
 TrajectoryProblem bending_problem(const std::string& integrator, bool free_state, int steps = 3) {
   TrajectoryProblem problem = testing::small_transcription(integrator, 6, free_state);
-  const Model model = problem.simulator.model();
+  const Model model = problem.horizon.model();
   const ParameterSet set =
       ParameterSet::named(model, {"joint.hinge.translation.x", "body.hand.mass", "motor.ball.P"});
-  SimulationOptions options = problem.simulator.options();
+  SimulationOptions options = problem.horizon.options();
   options.steps = steps;
   options.measurements = {
       PointVelocity{"speed", model.find_link("arm"), {0.1, 0.0, 0.05}},
@@ -36,11 +36,11 @@ TrajectoryProblem bending_problem(const std::string& integrator, bool free_state
       MotorPower{"power", 0},
       MotorPower{"power again", 0},
       CentreOfMass{"centre"}};
-  problem.simulator = Simulator(model, set, options);
+  problem.horizon = Horizon(model, set, options);
   problem.map = std::make_shared<IdentityDesignMap>(set);
   problem.objective = Objective(squared_variables(0.1));
   problem.objective.add(effort(0.2)).add(squared_velocity(0.3));
-  problem.constraints = {testing::every_number(problem.simulator)};
+  problem.constraints = {testing::every_number(problem.horizon)};
   problem.controls.hold = 2;
   problem.controls.start = problem.controls.start.leftCols(1).eval();
   return problem;

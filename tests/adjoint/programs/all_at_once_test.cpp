@@ -6,6 +6,8 @@
 
 #include "hbar/adjoint/programs/shooting.h"
 #include "hbar/adjoint/trajectory/integrator.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "tests/adjoint/programs/transcription_problems.h"
 #include "tests/support/dense_nlp.h"
@@ -26,9 +28,9 @@ struct SimulatedSubject {
 /// The same problem with steps that begin anew.
 TrajectoryProblem restarted_transcription() {
   TrajectoryProblem problem = testing::small_transcription("bdf2", 6, false);
-  SimulationOptions options = problem.simulator.options();
+  SimulationOptions options = problem.horizon.options();
   options.restarts = {2, 5};
-  problem.simulator = Simulator(problem.simulator.model(), problem.simulator.parameters(), options);
+  problem.horizon = Horizon(problem.horizon.model(), problem.horizon.parameters(), options);
   return problem;
 }
 
@@ -47,15 +49,15 @@ class AllAtOnceOfASimulation : public ::testing::TestWithParam<SimulatedSubject>
 TEST_P(AllAtOnceOfASimulation, HasNoResidualAndTheSimulationsNumbers) {
   const TrajectoryProblem problem = GetParam().make();
   AllAtOnce whole(problem, kWhole);
-  Simulator simulator = problem.simulator;
+  Horizon horizon = problem.horizon;
   const Eigen::Index head = whole.input_variables().size();
   Eigen::VectorXd x = testing::near_start(whole, 1e-4, 3);
-  const Trajectory trajectory = simulator.rollout(whole.inputs(x)).trajectory();
+  const Trajectory trajectory = simulate(horizon, whole.inputs(x)).trajectory();
   ASSERT_EQ(x.size() - head, trajectory.q.rows() * trajectory.timeline.last_stage());
   x.tail(x.size() - head) = trajectory.q.rightCols(trajectory.timeline.last_stage()).reshaped();
   // Each row is divided by its largest entry of H̄: a step of Newton's, which ends at 1e-13.
   EXPECT_LT(whole.residual(x), 1e-11);
-  const TrajectoryValues expected = simulator.values(trajectory);
+  const TrajectoryValues expected = read_values(horizon, trajectory);
   const TrajectoryValues& found = whole.trajectory_values(x);
   EXPECT_EQ(found.q, expected.q);
   EXPECT_LT(relative_gap(found.qdot, expected.qdot), 1e-12);
@@ -87,9 +89,9 @@ INSTANTIATE_TEST_SUITE_P(All, AllAtOnceOfASimulation, ::testing::ValuesIn(simula
 /// A few steps of the small model.
 TrajectoryProblem short_transcription(const std::string& integrator, int steps) {
   TrajectoryProblem problem = testing::small_transcription(integrator, 6, false);
-  SimulationOptions options = problem.simulator.options();
+  SimulationOptions options = problem.horizon.options();
   options.steps = steps;
-  problem.simulator = Simulator(problem.simulator.model(), problem.simulator.parameters(), options);
+  problem.horizon = Horizon(problem.horizon.model(), problem.horizon.parameters(), options);
   problem.objective = Objective(squared_velocity(0.2));
   problem.constraints.clear();
   problem.controls.start = problem.controls.start.leftCols(1).eval();
@@ -130,11 +132,10 @@ TEST(AllAtOnce, BeginsAtAGuessOfTheMotion) {
 
 TEST(AllAtOnce, BeginsAtRestWhereNothingCanBeSimulated) {
   TrajectoryProblem problem = short_transcription("bdf1", 3);
-  SimulationOptions simulation = problem.simulator.options();
+  SimulationOptions simulation = problem.horizon.options();
   simulation.newton.max_iter = 1;
   simulation.max_halvings = 0;
-  problem.simulator =
-      Simulator(problem.simulator.model(), problem.simulator.parameters(), simulation);
+  problem.horizon = Horizon(problem.horizon.model(), problem.horizon.parameters(), simulation);
   AllAtOnce whole(problem, kWhole);
   const Eigen::Index dof = problem.q0.size();
   EXPECT_EQ(whole.variables().start.tail(3 * dof), problem.q0.replicate(3, 1));
@@ -197,7 +198,7 @@ TEST(AllAtOnce, RefusesAFirstGuessThatChangesChart) {
   Problem problem = testing::spinning_problem("bdf1");
   const ParameterSet none;
   TrajectoryProblem spinning{
-      .simulator = Simulator(problem.simulator.model(), none, problem.simulator.options()),
+      .horizon = Horizon(problem.horizon.model(), none, problem.horizon.options()),
       .map = std::make_shared<IdentityDesignMap>(none),
       .objective = Objective(squared_velocity()),
       .constraints = {},

@@ -133,8 +133,8 @@ TEST(InertiaChart, KeepsEveryPointWithinItsBoundsPhysical) {
   const Model model = small_model();
   const ParameterSet set = ParameterSet::named(model, {"body.arm.inertia", "body.hand.inertia"});
   const InertiaChart chart(set);
-  Simulator simulator(model, set, {.integrator = "bdf1", .h = 0.01, .steps = 1});
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon(model, set, {.integrator = "bdf1", .h = 0.01, .steps = 1});
+  Inputs inputs = horizon.nominal_inputs();
   for (int corner = 0; corner < 8; ++corner) {
     Eigen::VectorXd d = chart.variables().lower;
     for (int k = 0; k < 3; ++k) {
@@ -143,11 +143,11 @@ TEST(InertiaChart, KeepsEveryPointWithinItsBoundsPhysical) {
       }
     }
     inputs.p = chart.parameters(d);
-    EXPECT_NO_THROW(static_cast<void>(simulator.rollout(inputs))) << corner;
+    EXPECT_NO_THROW(static_cast<void>(simulate(horizon, inputs))) << corner;
   }
   inputs.p = set.nominal();
   inputs.p[0] *= 10.0;  // without the chart: more than the sum of the other two
-  EXPECT_THROW(static_cast<void>(simulator.rollout(inputs)), InvalidInput);
+  EXPECT_THROW(static_cast<void>(simulate(horizon, inputs)), InvalidInput);
 }
 
 TEST(InertiaChart, RefusesHalfABodyAndAnImpossibleShare) {

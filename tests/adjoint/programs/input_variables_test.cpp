@@ -24,7 +24,7 @@ TrajectoryProblem held_problem(bool free_state) {
   const Model model = builder.build();
   const ParameterSet set =
       ParameterSet::named(model, {"body.lower.mass", "body.lower.inertia", "joint.elbow.damping"});
-  TrajectoryProblem out{.simulator = Simulator(model, set, testing::options_of("bdf1", 0.02, 7)),
+  TrajectoryProblem out{.horizon = Horizon(model, set, testing::options_of("bdf1", 0.02, 7)),
                         .map = std::make_shared<InertiaChart>(set),
                         .objective = {},
                         .constraints = {},
@@ -160,7 +160,7 @@ TEST(InputVariables, RefusePartsThatDoNotFit) {
     return message_of<InvalidInput>([&] { static_cast<void>(InputVariables(problem)); });
   };
   EXPECT_EQ(message([](TrajectoryProblem& parts) { parts.map = nullptr; }),
-            "TrajectoryProblem: the map has 0 parameters; the simulator has 5");
+            "TrajectoryProblem: the map has 0 parameters; the horizon has 5");
   EXPECT_EQ(message([](TrajectoryProblem& parts) { parts.controls.hold = 0; }),
             "TrajectoryProblem: controls.hold is 0; it must be ≥ 1");
   EXPECT_EQ(message([](TrajectoryProblem& parts) { parts.design_weight = testing::kNan; }),

@@ -38,14 +38,14 @@ class LoadProblem : public ::testing::Test {
 
 TEST_F(LoadProblem, TakesWhatTheSceneSays) {
   const LoadedProblem loaded = load_problem(hinge());
-  const SimulationOptions& options = loaded.problem.simulator.options();
+  const SimulationOptions& options = loaded.problem.horizon.options();
   EXPECT_EQ(options.integrator, "sdirk2");
   EXPECT_EQ(options.h, 0.125);
   EXPECT_EQ(options.steps, 100);
   EXPECT_EQ(options.newton.tol, 1e-7);
   EXPECT_EQ(options.newton.max_iter, 7);
   EXPECT_EQ(options.newton.max_ls, 3);
-  EXPECT_EQ(loaded.problem.simulator.parameters().size(), 2);
+  EXPECT_EQ(loaded.problem.horizon.parameters().size(), 2);
   EXPECT_EQ(loaded.objective, ObjectiveChoice::kFinalPosition);
   EXPECT_EQ(loaded.problem.inputs.q0.size(), 1);
   EXPECT_EQ(loaded.files, std::vector<std::filesystem::path>{folder_ / "scene.xml"});
@@ -59,16 +59,16 @@ TEST_F(LoadProblem, OptionsWin) {
   options.newton_tol = 1e-3;
   options.parameters = ParameterChoice::kNone;
   const LoadedProblem loaded = load_problem(hinge(), options);
-  EXPECT_EQ(loaded.problem.simulator.options().integrator, "bdf2");
-  EXPECT_EQ(loaded.problem.simulator.options().h, 0.5);
-  EXPECT_EQ(loaded.problem.simulator.options().steps, 3);
-  EXPECT_EQ(loaded.problem.simulator.options().newton.tol, 1e-3);
-  EXPECT_EQ(loaded.problem.simulator.parameters().size(), 0);
+  EXPECT_EQ(loaded.problem.horizon.options().integrator, "bdf2");
+  EXPECT_EQ(loaded.problem.horizon.options().h, 0.5);
+  EXPECT_EQ(loaded.problem.horizon.options().steps, 3);
+  EXPECT_EQ(loaded.problem.horizon.options().newton.tol, 1e-3);
+  EXPECT_EQ(loaded.problem.horizon.parameters().size(), 0);
   options.parameters = ParameterChoice::kNamed;
   options.parameter_names = {"gravity.x"};
-  EXPECT_EQ(load_problem(hinge(), options).problem.simulator.parameters()[0].name, "gravity.x");
+  EXPECT_EQ(load_problem(hinge(), options).problem.horizon.parameters()[0].name, "gravity.x");
   options.parameters = ParameterChoice::kAll;
-  EXPECT_GT(load_problem(hinge(), options).problem.simulator.parameters().size(), 10);
+  EXPECT_GT(load_problem(hinge(), options).problem.horizon.parameters().size(), 10);
 }
 
 TEST_F(LoadProblem, ObjectiveFollowsTheVariables) {
@@ -88,7 +88,7 @@ TEST_F(LoadProblem, SensorsMayBeAnObjectiveAndAreNeverTheUsualOne) {
                           "rect_pos0=\"0 0 0\" rect_pos1=\"1 1 0\" axis0=\"1 0 0\" "
                           "axis1=\"0 1 0\" resolution=\"2 3\"/></sensor>\n");
   const LoadedProblem usual = load_problem(file);
-  EXPECT_EQ(usual.problem.simulator.model().tactile_count(), 18);
+  EXPECT_EQ(usual.problem.horizon.model().tactile_count(), 18);
   EXPECT_EQ(usual.objective, ObjectiveChoice::kFinalPosition);
   LoadOptions options;
   options.objective = ObjectiveChoice::kTactile;

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 
 #include "hbar/adjoint/programs/shooting.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "tests/adjoint/programs/transcription_problems.h"
 #include "tests/support/dense_nlp.h"
 
@@ -37,8 +38,8 @@ TEST_P(ReducedHessian, OfAllAtOnceIsThatOfShooting) {
   const auto whole = transcribe(problem, {.formulation = Formulation::kAllAtOnce});
   const Eigen::VectorXd x = testing::near_start(*shooting, 1e-4, 5);
   const Eigen::Index n = x.size();
-  Simulator simulator = problem.simulator;
-  const Trajectory trajectory = simulator.rollout(shooting->inputs(x)).trajectory();
+  Horizon horizon = problem.horizon;
+  const Trajectory trajectory = simulate(horizon, shooting->inputs(x)).trajectory();
   const Eigen::Index states = whole->variables().start.size() - n;
   const Eigen::Index stages = trajectory.timeline.last_stage();
   ASSERT_EQ(trajectory.q.rows() * stages, states);

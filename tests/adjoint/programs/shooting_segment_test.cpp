@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
 #include "tests/support/small_problems.h"
@@ -25,13 +26,13 @@ class SegmentOfEveryIntegrator : public ::testing::TestWithParam<std::string> {
  protected:
   static Problem make(const std::string& integrator) {
     Problem problem = testing::make_problem(testing::small_model(), integrator, 0.02, kHorizon);
-    const Model model = problem.simulator.model();
+    const Model model = problem.horizon.model();
     const ParameterSet set =
         ParameterSet::named(model, {"body.arm.mass", "joint.hinge.translation"});
-    SimulationOptions options = problem.simulator.options();
+    SimulationOptions options = problem.horizon.options();
     options.restarts = {kBegin, 6};
     options.measurements = {MotorPower{"power", 0}};
-    problem.simulator = Simulator(model, set, options);
+    problem.horizon = Horizon(model, set, options);
     problem.inputs.p = set.nominal();
     for (int k = 0; k < kHorizon; ++k) {
       problem.inputs.u.col(k) = problem.inputs.u.col(k - k % kHold);
@@ -85,12 +86,12 @@ class SegmentOfEveryIntegrator : public ::testing::TestWithParam<std::string> {
   }
 
   Problem problem = make(GetParam());
-  const Eigen::Index dof = problem.simulator.model().dof();
-  const Eigen::Index controls = problem.simulator.model().control_count();
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-  const TrajectoryValues values = problem.simulator.values(trajectory);
-  const Eigen::MatrixXd map_jacobian = Random(1).matrix(problem.simulator.parameters().size(), 2);
-  ShootingSegment segment{problem.simulator, kBegin, kLength, kHold, columns()};
+  const Eigen::Index dof = problem.horizon.model().dof();
+  const Eigen::Index controls = problem.horizon.model().control_count();
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  const TrajectoryValues values = read_values(problem.horizon, trajectory);
+  const Eigen::MatrixXd map_jacobian = Random(1).matrix(problem.horizon.parameters().size(), 2);
+  ShootingSegment segment{problem.horizon, kBegin, kLength, kHold, columns()};
 };
 
 TEST_P(SegmentOfEveryIntegrator, HasTheValuesOfTheWhole) {
@@ -117,14 +118,14 @@ TEST_P(SegmentOfEveryIntegrator, HasTheTangentsOfTheWhole) {
   Random random(2);
   const Eigen::Vector2d design = random.vector(2);
   const Eigen::MatrixXd blocks = random.matrix(controls, 4);
-  Directions along = Directions::zero(problem.simulator, 1);
+  Directions along = Directions::zero(problem.horizon, 1);
   along.p = map_jacobian * design;
   along.q0 = random.vector(dof);
   along.qdot0 = random.vector(dof);
   for (int k = 0; k < kHorizon; ++k) {
     along.u.middleRows(k * controls, controls) = blocks.col(k / kHold);
   }
-  const Tangents whole = TangentSweep(problem.simulator).push_forward(trajectory, along);
+  const Tangents whole = TangentSweep(problem.horizon).push_forward(trajectory, along);
   Eigen::VectorXd variables(columns().size());
   variables << design, blocks.middleCols(1, 2).reshaped(), whole.q.middleRows(kBegin * dof, dof),
       whole.qdot.middleRows(kBegin * dof, dof);
@@ -197,11 +198,11 @@ TEST(SegmentColumns, AreTheInverseOfTheirPlaces) {
 
 TEST(ShootingSegment, SaysWhyItFailsAndGoesOn) {
   Problem problem = testing::small_problem("bdf1");
-  ShootingSegment segment(problem.simulator, 0, 3, 1, {});
+  ShootingSegment segment(problem.horizon, 0, 3, 1, {});
   Inputs inputs = problem.inputs;
   inputs.u = problem.inputs.u.leftCols(3).eval();
   Inputs impossible = inputs;
-  const int mass = problem.simulator.parameters().find("body.arm.mass");
+  const int mass = problem.horizon.parameters().find("body.arm.mass");
   impossible.p[mass] = -1.0;
   segment.simulate(impossible);
   EXPECT_NE(segment.failure().find("body.arm.mass"), std::string::npos);
@@ -212,7 +213,7 @@ TEST(ShootingSegment, SaysWhyItFailsAndGoesOn) {
 
 TEST(ShootingSegment, TellsOfChangedCharts) {
   Problem problem = testing::spinning_problem("bdf1");
-  ShootingSegment segment(problem.simulator, 0, problem.simulator.options().steps, 1, {});
+  ShootingSegment segment(problem.horizon, 0, problem.horizon.options().steps, 1, {});
   segment.simulate(problem.inputs);
   ASSERT_EQ(segment.failure(), "");
   EXPECT_TRUE(segment.changes_chart());

@@ -20,10 +20,10 @@ using testing::kInfinity;
 /// Every field is read by some row; the last block of controls is a short one.
 TrajectoryProblem small_parts(const std::string& integrator) {
   Problem problem = testing::make_problem(testing::small_model(), integrator, 0.02, 14);
-  const Model model = problem.simulator.model();
+  const Model model = problem.horizon.model();
   ParameterSet set = ParameterSet::named(
       model, {"joint.hinge.translation", "body.arm", "body.hand.mass", "joint.ball.damping"});
-  const SimulationOptions options = problem.simulator.options();
+  const SimulationOptions options = problem.horizon.options();
   const ConstraintRows own{
       {"power", "rate"}, Eigen::VectorXd::Constant(2, -9.0), Eigen::VectorXd::Constant(2, 9.0)};
   std::vector<ConstraintPointer> constraints = {
@@ -43,7 +43,7 @@ TrajectoryProblem small_parts(const std::string& integrator) {
   controls.hold = 4;
   controls.start = problem.inputs.u.leftCols(4);
   auto map = std::make_shared<InertiaChart>(set);
-  return {.simulator = Simulator(model, set, options),
+  return {.horizon = Horizon(model, set, options),
           .map = std::move(map),
           .objective = problem.objective,
           .constraints = std::move(constraints),
@@ -73,7 +73,7 @@ TEST(Shooting, NamesAndPlacesItsVariables) {
   Shooting problem(small_parts("bdf2"), {});
   const solvers::NlpVariables& variables = problem.variables();
   const Eigen::Index d = problem.problem().map->variables().size();
-  const int controls = problem.problem().simulator.model().control_count();
+  const int controls = problem.problem().horizon.model().control_count();
   EXPECT_EQ(problem.input_variables().block_count(), 4);
   ASSERT_EQ(variables.start.size(), d + 4 * controls);
   EXPECT_EQ(variables.names[0], "joint.hinge.translation.x");
@@ -91,7 +91,7 @@ TEST(Shooting, NamesAndPlacesItsVariables) {
 TEST(Shooting, LeavesOutWhatLaterControlsCannotDo) {
   Shooting problem(small_parts("bdf2"), {});
   const Eigen::Index d = problem.problem().map->variables().size();
-  const int controls = problem.problem().simulator.model().control_count();
+  const int controls = problem.problem().horizon.model().control_count();
   const auto& names = problem.constraint_limits().names;
   const auto entries = [&](const std::string& name) {
     const auto row = static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -140,10 +140,10 @@ TEST(Shooting, FailsAPointThatCannotBe) {
 
 TEST(Shooting, FailsAPointWhoseSimulationFails) {
   TrajectoryProblem parts = small_parts("bdf1");
-  SimulationOptions options = parts.simulator.options();
+  SimulationOptions options = parts.horizon.options();
   options.newton.max_iter = 1;
   options.max_halvings = 0;
-  parts.simulator = Simulator(parts.simulator.model(), parts.simulator.parameters(), options);
+  parts.horizon = Horizon(parts.horizon.model(), parts.horizon.parameters(), options);
   Shooting problem(parts, {});
   EXPECT_THROW(static_cast<void>(problem.objective(problem.variables().start)),
                solvers::EvaluationError);
@@ -151,8 +151,8 @@ TEST(Shooting, FailsAPointWhoseSimulationFails) {
 
 TEST(Shooting, ControlsAMechanismThatIsNotDesigned) {
   TrajectoryProblem parts = small_parts("bdf2");
-  const Model model = parts.simulator.model();
-  parts.simulator = Simulator(model, ParameterSet(), parts.simulator.options());
+  const Model model = parts.horizon.model();
+  parts.horizon = Horizon(model, ParameterSet(), parts.horizon.options());
   parts.map = std::make_shared<IdentityDesignMap>(ParameterSet());
   parts.constraints.erase(parts.constraints.begin() + 3);  // on parameters
   parts.controls.scale = Eigen::VectorXd::Constant(model.control_count(), 0.5);
@@ -176,7 +176,7 @@ TEST(Shooting, RefusesPartsThatDoNotFit) {
   expect_refused([](TrajectoryProblem& parts) { parts.design_weight = -1.0; });
   expect_refused([](TrajectoryProblem& parts) {
     parts.constraints.push_back(
-        coordinate_limits(parts.simulator.model(), 0, {15}, -kInfinity, kInfinity));
+        coordinate_limits(parts.horizon.model(), 0, {15}, -kInfinity, kInfinity));
   });
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/numerics.h"
 #include "tests/support/scenes.h"
@@ -14,14 +16,14 @@ constexpr int kGuessedSteps = 30;
 TrajectoryProblem guessed_problem(Model model) {
   const ParameterSet set;
   const Eigen::Index controls = model.control_count();
-  TrajectoryProblem out{.simulator = Simulator(std::move(model), set,
-                                               testing::options_of("bdf2", 0.02, kGuessedSteps)),
-                        .map = std::make_shared<IdentityDesignMap>(set),
-                        .objective = {},
-                        .constraints = {},
-                        .controls = {},
-                        .q0 = Eigen::Vector2d(0.1, -0.3),
-                        .qdot0 = Eigen::Vector2d(0.5, 0.2)};
+  TrajectoryProblem out{
+      .horizon = Horizon(std::move(model), set, testing::options_of("bdf2", 0.02, kGuessedSteps)),
+      .map = std::make_shared<IdentityDesignMap>(set),
+      .objective = {},
+      .constraints = {},
+      .controls = {},
+      .q0 = Eigen::Vector2d(0.1, -0.3),
+      .qdot0 = Eigen::Vector2d(0.5, 0.2)};
   out.controls.start = Eigen::MatrixXd::Zero(controls, 1);
   return out;
 }
@@ -31,20 +33,20 @@ TEST(StateVariables, AreGuessedBySimulation) {
   const InputVariables head(problem);
   const Eigen::MatrixXd states = guess_states(problem, head, {});
   const Trajectory trajectory =
-      problem.simulator.rollout(head.inputs(head.variables().start)).trajectory();
-  const TrajectoryValues values = problem.simulator.values(trajectory);
+      simulate(problem.horizon, head.inputs(head.variables().start)).trajectory();
+  const TrajectoryValues values = read_values(problem.horizon, trajectory);
   EXPECT_EQ(states.topRows(2), values.q);
   EXPECT_EQ(states.bottomRows(2), values.qdot);
 }
 
 TEST(StateVariables, RestFromWhereTheSimulationFails) {
   TrajectoryProblem problem = guessed_problem(testing::stiff_pendulum(false));
-  SimulationOptions options = problem.simulator.options();
+  SimulationOptions options = problem.horizon.options();
   options.max_halvings = 0;
   options.newton.max_iter = 5;  // enough for swinging, not for the stop
-  problem.simulator = Simulator(problem.simulator.model(), ParameterSet(), options);
+  problem.horizon = Horizon(problem.horizon.model(), ParameterSet(), options);
   const InputVariables head(problem);
-  const Rollout rollout = problem.simulator.rollout(head.inputs(head.variables().start));
+  const Rollout rollout = simulate(problem.horizon, head.inputs(head.variables().start));
   const int done = rollout.partial().step_count();
   ASSERT_FALSE(rollout.converged());
   ASSERT_GT(done, 0);
@@ -86,7 +88,7 @@ TEST(StateVariables, RefuseAGuessOfAnotherShape) {
 
 TEST(StateVariables, HaveNamesAndTypicalSizes) {
   TrajectoryProblem problem = guessed_problem(testing::double_pendulum());
-  EXPECT_EQ(state_names(problem.simulator.model()),
+  EXPECT_EQ(state_names(problem.horizon.model()),
             (std::vector<std::string>{"shoulder", "elbow", "shoulder rate", "elbow rate"}));
   EXPECT_EQ(state_scale(problem), Eigen::Vector4d::Ones());
   problem.q_scale = Eigen::Vector2d(2.0, 3.0);

@@ -26,7 +26,7 @@ class EveryFormulationsHessian : public ::testing::TestWithParam<Formulation> {
 /// are these numbers, and S the objective's second partials: Tᵀ S T and the design's own weight.
 TEST_P(EveryFormulationsHessian, OfGaussNewtonIsBuiltOfPartialsAndDerivatives) {
   TrajectoryProblem problem = testing::small_transcription("bdf2", 5, true);
-  problem.constraints = {testing::every_number(problem.simulator)};
+  problem.constraints = {testing::every_number(problem.horizon)};
   const auto nlp = transcribed(problem);
   const Eigen::VectorXd x = testing::near_start(*nlp, 1e-2, 9);
   const TrajectoryValues values = nlp->trajectory_values(x);
@@ -111,7 +111,7 @@ TEST_P(EveryFormulationsHessian, OfGaussNewtonDoesNotAskConstraintsAndTheDesignM
     IdentityDesignMap map_;
   };
   problem.constraints.pop_back();
-  problem.map = std::make_shared<Unbent>(problem.simulator.parameters());
+  problem.map = std::make_shared<Unbent>(problem.horizon.parameters());
   const auto with_map = transcribed(problem);
   EXPECT_NO_THROW(static_cast<void>(with_map->hessian_pattern(HessianKind::kGaussNewton)));
   EXPECT_NE(message_of<InvalidInput>([&] {

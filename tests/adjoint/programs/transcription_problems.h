@@ -21,12 +21,12 @@ namespace hbar::testing {
                                                            const std::vector<std::string>& names,
                                                            std::vector<Measurement> measurements,
                                                            bool free_state) {
-  const Model model = problem.simulator.model();
+  const Model model = problem.horizon.model();
   ParameterSet set = ParameterSet::named(model, names);
-  SimulationOptions options = problem.simulator.options();
+  SimulationOptions options = problem.horizon.options();
   options.measurements = std::move(measurements);
   const int steps = options.steps;
-  TrajectoryProblem out{.simulator = Simulator(model, set, options),
+  TrajectoryProblem out{.horizon = Horizon(model, set, options),
                         .map = std::make_shared<InertiaChart>(set),
                         .objective = problem.objective,
                         .constraints = {},
@@ -47,7 +47,7 @@ namespace hbar::testing {
                       Eigen::Vector3d::Constant(-3.0), Eigen::Vector3d::Constant(3.0)),
       rate_limits(model, 6, step_range(1, steps, 3), -5.0, 5.0), periodicity(model, steps, {6}),
       coordinate_limits(model, 7, {0, steps}, -3.0, 3.0)};
-  for (int row = 0; row < out.simulator.measured_count(); ++row) {
+  for (int row = 0; row < out.horizon.measured_count(); ++row) {
     out.constraints.push_back(
         value_limits(concat("measured ", row), ValueField::kMeasured, row, {0, 4}, -90.0, 90.0));
   }
@@ -70,7 +70,7 @@ namespace hbar::testing {
 [[nodiscard]] inline TrajectoryProblem small_transcription(const std::string& integrator, int steps,
                                                            bool free_state) {
   Problem problem = make_problem(small_model(), integrator, 0.02, steps);
-  const int hand = problem.simulator.model().find_link("hand");
+  const int hand = problem.horizon.model().find_link("hand");
   return every_field_problem(
       std::move(problem),
       {"joint.hinge.translation", "body.arm.inertia", "body.hand.mass", "joint.ball.damping"},

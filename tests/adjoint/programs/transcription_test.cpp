@@ -65,7 +65,7 @@ TEST_P(EveryTranscription, HasExactFirstAndSecondDerivatives) {
   EXPECT_LT(first.gap, 1e-6) << first.gap_name;
   // Under contact the smooth piece is so short that some rows' remainders are rounding alone; the
   // Lagrangian's below, of all rows together, is not.
-  if (nlp->problem().simulator.model().contact_count() == 0) {
+  if (nlp->problem().horizon.model().contact_count() == 0) {
     EXPECT_GT(first.slope, 1.9) << first.slope_name;
   }
   const solvers::HessianCheck second = solvers::check_hessian(*nlp, x, options);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/model/model_builder.h"
 #include "tests/support/numerics.h"
@@ -25,18 +27,18 @@ constexpr int kSteps = 20;
 class Slider {
  public:
   Slider(double damping, const std::vector<std::string>& names)
-      : simulator_(make_model(damping), ParameterSet(), {}) {
-    const Model model = simulator_.model();
-    simulator_ = Simulator(model, ParameterSet::named(model, names),
-                           {.integrator = "bdf1",
-                            .h = kStep,
-                            .steps = kSteps,
-                            .measurements = {PointVelocity{.name = "speed", .link = 0}}});
+      : horizon_(make_model(damping), ParameterSet(), {}) {
+    const Model model = horizon_.model();
+    horizon_ = Horizon(model, ParameterSet::named(model, names),
+                       {.integrator = "bdf1",
+                        .h = kStep,
+                        .steps = kSteps,
+                        .measurements = {PointVelocity{.name = "speed", .link = 0}}});
   }
   Trajectory roll(const Eigen::VectorXd& p) {
-    Inputs inputs = simulator_.nominal_inputs();
+    Inputs inputs = horizon_.nominal_inputs();
     inputs.p = p;
-    return simulator_.rollout(inputs).trajectory();
+    return simulate(horizon_, inputs).trajectory();
   }
   /// Positions at every step but the first, as they are at p.
   TrajectoryData positions(const Eigen::VectorXd& p) {
@@ -51,7 +53,7 @@ class Slider {
     }
     return data;
   }
-  Simulator& simulator() { return simulator_; }
+  const Horizon& horizon() { return horizon_; }
 
  private:
   static Model make_model(double damping) {
@@ -62,17 +64,17 @@ class Slider {
         solid_body("block", Cuboid{{0.1, 0.1, 0.1}}, 2000.0));
     return builder.build();
   }
-  Simulator simulator_;
+  Horizon horizon_;
 };
 
 TEST(Identification, OfGravityAndInitialStateIsTheClosedForm) {
   Slider slider(0.0, {"gravity.x"});
   const Eigen::VectorXd d = Eigen::VectorXd::Constant(1, 3.0);
   const TrajectoryData data = slider.positions(d);
-  const IdentityDesignMap map(slider.simulator().parameters());
+  const IdentityDesignMap map(slider.horizon().parameters());
   const double sigma = 0.02;
   const Information out =
-      fisher_information(slider.simulator(), slider.roll(d), map, d, data,
+      fisher_information(slider.horizon(), slider.roll(d), map, d, data,
                          Eigen::VectorXd::Constant(1, sigma), {.initial_state = true});
   Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
   for (int k = 1; k <= kSteps; ++k) {  // q_k = q_0 + k h q̇_0 + h² g k (k + 1) / 2
@@ -88,11 +90,11 @@ TEST(Identification, OfGravityAndInitialStateIsTheClosedForm) {
 
 TEST(Identification, CannotTellMassFromDampingByMotionAlone) {
   Slider slider(0.6, {"body.block.mass", "joint.slider.damping"});
-  const Eigen::VectorXd d = slider.simulator().parameters().nominal();
+  const Eigen::VectorXd d = slider.horizon().parameters().nominal();
   const TrajectoryData data = slider.positions(d);
-  const IdentityDesignMap map(slider.simulator().parameters());
-  const Information out = fisher_information(slider.simulator(), slider.roll(d), map, d, data,
-                                             Eigen::VectorXd::Ones(1));
+  const IdentityDesignMap map(slider.horizon().parameters());
+  const Information out =
+      fisher_information(slider.horizon(), slider.roll(d), map, d, data, Eigen::VectorXd::Ones(1));
   ASSERT_EQ(out.silent.cols(), 1);
   // q depends on c / m: it does not answer where both grow by the same share.
   const Eigen::Vector2d silent = out.silent.col(0).cwiseProduct(map.variables().scale);
@@ -104,14 +106,14 @@ TEST(Identification, CannotTellMassFromDampingByMotionAlone) {
 
 TEST(Identification, ReadsMeasurementsAsItReadsRates) {
   Slider slider(0.6, {"gravity.x", "joint.slider.damping"});
-  const Eigen::VectorXd d = slider.simulator().parameters().nominal();
-  const IdentityDesignMap map(slider.simulator().parameters());
+  const Eigen::VectorXd d = slider.horizon().parameters().nominal();
+  const IdentityDesignMap map(slider.horizon().parameters());
   TrajectoryData data;
   data.places = {{ValueField::kMeasured, 7, 0}, {ValueField::kQdot, 7, 0}};
   data.column = {0, 1};
   data.data = Eigen::Vector2d::Zero();
   const Eigen::MatrixXd rows =
-      data_sensitivity(slider.simulator(), slider.roll(d), map, d, data, true);
+      data_sensitivity(slider.horizon(), slider.roll(d), map, d, data, true);
   EXPECT_GT(rows.row(1).norm(), 0.1);
   EXPECT_LT((rows.row(0) - rows.row(1)).norm(), 1e-12 * rows.row(1).norm());
 }
@@ -123,9 +125,9 @@ TEST(Identification, ForeseesHowFitsOfDampingScatter) {
   const Eigen::VectorXd truth = Eigen::VectorXd::Constant(1, 1.5);
   TrajectoryData data = slider.positions(truth);
   const Eigen::VectorXd exact = data.data;
-  const IdentityDesignMap map(slider.simulator().parameters());
-  const Information foreseen = fisher_information(slider.simulator(), slider.roll(truth), map,
-                                                  truth, data, Eigen::VectorXd::Constant(1, sigma));
+  const IdentityDesignMap map(slider.horizon().parameters());
+  const Information foreseen = fisher_information(slider.horizon(), slider.roll(truth), map, truth,
+                                                  data, Eigen::VectorXd::Constant(1, sigma));
   ASSERT_TRUE(foreseen.complete());
   Random random(3);
   double mean = 0.0;
@@ -139,7 +141,7 @@ TEST(Identification, ForeseesHowFitsOfDampingScatter) {
     Eigen::VectorXd d = truth;
     for (int iteration = 0; iteration < 2; ++iteration) {  // of Gauss and Newton
       const Trajectory trajectory = slider.roll(d);
-      const Eigen::VectorXd J = data_sensitivity(slider.simulator(), trajectory, map, d, data);
+      const Eigen::VectorXd J = data_sensitivity(slider.horizon(), trajectory, map, d, data);
       const Eigen::VectorXd residual = trajectory.q.rightCols(kSteps).transpose() - data.data;
       d[0] -= J.dot(residual) / J.squaredNorm();
     }
@@ -169,7 +171,7 @@ class IdentificationOfSmallProblem : public ::testing::Test {
     inputs.p = x.head(x.size() - 2 * dof);
     inputs.q0 = x.segment(inputs.p.size(), dof);
     inputs.qdot0 = x.tail(dof);
-    return measured(problem_.simulator.values(problem_.simulator.rollout(inputs).trajectory()));
+    return measured(read_values(problem_.horizon, simulate(problem_.horizon, inputs).trajectory()));
   }
   [[nodiscard]] static Eigen::VectorXd measured(const TrajectoryValues& values) {
     return (Eigen::VectorXd(6) << values.q(1, 3), values.qdot(2, 5), values.v(1, 4), values.u(0, 2),
@@ -181,10 +183,10 @@ class IdentificationOfSmallProblem : public ::testing::Test {
 };
 
 TEST_F(IdentificationOfSmallProblem, HasSensitivitiesThatAreDerivatives) {
-  const IdentityDesignMap map(problem_.simulator.parameters());
-  const Trajectory trajectory = problem_.simulator.rollout(problem_.inputs).trajectory();
+  const IdentityDesignMap map(problem_.horizon.parameters());
+  const Trajectory trajectory = simulate(problem_.horizon, problem_.inputs).trajectory();
   const Eigen::MatrixXd ours =
-      data_sensitivity(problem_.simulator, trajectory, map, problem_.inputs.p, data_, true);
+      data_sensitivity(problem_.horizon, trajectory, map, problem_.inputs.p, data_, true);
   Eigen::VectorXd x(ours.cols());
   x << problem_.inputs.p, problem_.inputs.q0, problem_.inputs.qdot0;
   const Eigen::Index p = problem_.inputs.p.size();
@@ -201,7 +203,7 @@ TEST_F(IdentificationOfSmallProblem, HasATermWithExactDerivatives) {
   const Eigen::VectorXd sigma = Eigen::VectorXd::LinSpaced(6, 0.5, 2.0);
   const auto term = measured_data_term(data_, sigma, 3.0);
   TrajectoryValues values =
-      problem_.simulator.values(problem_.simulator.rollout(problem_.inputs).trajectory());
+      read_values(problem_.horizon, simulate(problem_.horizon, problem_.inputs).trajectory());
   const Eigen::VectorXd gap = (measured(values) - data_.data).cwiseQuotient(sigma);
   EXPECT_NEAR(term->value(values), 1.5 * gap.squaredNorm(), 1e-14 * gap.squaredNorm());
 
@@ -226,11 +228,11 @@ TEST_F(IdentificationOfSmallProblem, RefusesWhatDoesNotFit) {
   EXPECT_THROW((void)measured_data_term(data_, Eigen::VectorXd::Ones(2)), InvalidInput);
   EXPECT_THROW((void)measured_data_term(data_, -one), InvalidInput);
   EXPECT_THROW((void)measured_data_term(data_, one, testing::kNan), InvalidInput);
-  const IdentityDesignMap map(problem_.simulator.parameters());
-  const Trajectory trajectory = problem_.simulator.rollout(problem_.inputs).trajectory();
+  const IdentityDesignMap map(problem_.horizon.parameters());
+  const Trajectory trajectory = simulate(problem_.horizon, problem_.inputs).trajectory();
   const auto refusal = [&](const Eigen::VectorXd& d) {
     return testing::message_of<InvalidInput>(
-        [&] { (void)data_sensitivity(problem_.simulator, trajectory, map, d, data_); });
+        [&] { (void)data_sensitivity(problem_.horizon, trajectory, map, d, data_); });
   };
   EXPECT_EQ(refusal(1.01 * problem_.inputs.p),
             "data_sensitivity: the trajectory was not computed with map.parameters(d)");

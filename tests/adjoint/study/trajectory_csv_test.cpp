@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "hbar/adjoint/terms/value_access.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/numerics.h"
 #include "tests/support/small_problems.h"
@@ -29,9 +31,10 @@ std::string arm_refusal(std::string_view text) {
 
 TEST(TrajectoryCsv, IsReadAsItIsWritten) {
   Problem problem = testing::small_problem("bdf2");
-  Simulator& simulator = problem.simulator;
-  const TrajectoryValues values = simulator.values(simulator.rollout(problem.inputs).trajectory());
-  const TrajectoryNames names = trajectory_names(simulator);
+  const Horizon& horizon = problem.horizon;
+  const TrajectoryValues values =
+      read_values(horizon, simulate(horizon, problem.inputs).trajectory());
+  const TrajectoryNames names = trajectory_names(horizon);
   const std::string text = trajectory_csv(names, values);
   const TrajectoryData data = read_trajectory_csv(
       text, "t.csv", names, {.h = values.h, .steps = static_cast<int>(values.u.cols())});
@@ -45,9 +48,9 @@ TEST(TrajectoryCsv, IsReadAsItIsWritten) {
 TEST(TrajectoryCsv, NamesSensorReadingsAndMeasurements) {
   SimulationOptions options;
   options.measurements = {CentreOfMass{.name = "centre"}, MotorPower{.name = "power", .motor = 1}};
-  const Simulator simulator(testing::contact_model(), ParameterSet(), options);
-  const Model& model = simulator.model();
-  const TrajectoryNames names = trajectory_names(simulator);
+  const Horizon horizon(testing::contact_model(), ParameterSet(), options);
+  const Model& model = horizon.model();
+  const TrajectoryNames names = trajectory_names(horizon);
   EXPECT_EQ(static_cast<int>(names.tactile.size()), model.tactile_count());
   EXPECT_EQ(names.tactile[4], "skin.1.shear1");
   EXPECT_EQ(names.v[3], "tip.x");

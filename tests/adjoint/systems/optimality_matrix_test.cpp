@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "tests/support/periodic_problems.h"
 #include "tests/support/small_problems.h"
 
@@ -22,8 +23,8 @@ struct Assembled {
 
   explicit Assembled(Problem p)
       : problem(std::move(p)),
-        trajectory(problem.simulator.rollout(problem.inputs).trajectory()),
-        linearizer(problem.simulator),
+        trajectory(simulate(problem.horizon, problem.inputs).trajectory()),
+        linearizer(problem.horizon),
         system(linearizer.linearize(trajectory)) {}
 };
 
@@ -33,8 +34,8 @@ Eigen::MatrixXd scaled(const Eigen::MatrixXd& H, const Eigen::MatrixXd& by) {
 }
 
 /// ∂v/∂q̄ of all stages by central differences of the end effectors' positions.
-Eigen::MatrixXd variables_by_q(Simulator& simulator, const Trajectory& trajectory) {
-  const Model& model = simulator.model();
+Eigen::MatrixXd variables_by_q(const Horizon& horizon, const Trajectory& trajectory) {
+  const Model& model = horizon.model();
   const int n = model.dof();
   const int stages = trajectory.timeline.last_stage();
   const int variables = model.variable_count();
@@ -65,9 +66,9 @@ constexpr SystemOptions kWeights = {
 TEST(OptimalityMatrix, GaussNewtonIsSTransposedSPlusLambda) {
   Assembled a(driven_pendulum("bdf2", 6));
   TrajectorySystem out;
-  fill_gauss_newton(a.problem.simulator, a.trajectory, a.system, kWeights, out);
+  fill_gauss_newton(a.problem.horizon, a.trajectory, a.system, kWeights, out);
   const Eigen::MatrixXd H(a.system.H.matrix());
-  const Eigen::MatrixXd E = variables_by_q(a.problem.simulator, a.trajectory);
+  const Eigen::MatrixXd E = variables_by_q(a.problem.horizon, a.trajectory);
   Eigen::MatrixXd S(E.rows() + H.rows(), H.cols());
   S << std::sqrt(2.0) * E, std::sqrt(3.0) * scaled(H, H);
   const Eigen::MatrixXd expected =
@@ -85,7 +86,7 @@ Eigen::MatrixXd kkt_in_groups(Assembled& a) {
   const Eigen::MatrixXd H(a.system.H.matrix());
   const Eigen::MatrixXd B = scaled(H, Eigen::MatrixXd(a.system.dg_du));
   const Eigen::MatrixXd C = scaled(H, Eigen::MatrixXd(a.system.dg_dp));
-  const Eigen::MatrixXd E = variables_by_q(a.problem.simulator, a.trajectory);
+  const Eigen::MatrixXd E = variables_by_q(a.problem.horizon, a.trajectory);
   const Eigen::Index m = H.rows();
   const Eigen::Index u = B.cols();
   const Eigen::Index p = C.cols();
@@ -105,7 +106,7 @@ TEST(OptimalityMatrix, KktIsThatOfTheGroupsInTimeOrder) {
     SystemOptions weights = kWeights;
     weights.parameters = true;
     TrajectorySystem out;
-    fill_kkt(a.problem.simulator, a.trajectory, a.system, weights, out);
+    fill_kkt(a.problem.horizon, a.trajectory, a.system, weights, out);
     const Eigen::MatrixXd groups = kkt_in_groups(a);
     // The order of unknowns, from their names.
     const Eigen::Index m = a.system.H.matrix().rows();
@@ -136,7 +137,7 @@ TEST(OptimalityMatrix, KktIsThatOfTheGroupsInTimeOrder) {
 TEST(OptimalityMatrix, KktHasAsManyNegativeEigenvaluesAsMultipliers) {
   Assembled a(make_problem(testing::contact_model(), "bdf1", 0.01, 4));
   TrajectorySystem out;
-  fill_kkt(a.problem.simulator, a.trajectory, a.system, {}, out);
+  fill_kkt(a.problem.horizon, a.trajectory, a.system, {}, out);
   const Eigen::VectorXd eigenvalues =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(out.A), Eigen::EigenvaluesOnly)
           .eigenvalues();
@@ -148,7 +149,7 @@ TEST(OptimalityMatrix, KktNamesItsUnknowns) {
   TrajectorySystem out;
   SystemOptions weights;
   weights.parameters = true;
-  fill_kkt(a.problem.simulator, a.trajectory, a.system, weights, out);
+  fill_kkt(a.problem.horizon, a.trajectory, a.system, weights, out);
   EXPECT_EQ(out.name_of_unknown(0), "stage 1 (t = 0.2), coordinate shoulder");
   EXPECT_EQ(out.name_of_unknown(3), "stage 1 (t = 0.2), control 1");
   EXPECT_EQ(out.name_of_unknown(11), "stage 2 (t = 0.4), multiplier of coordinate elbow");

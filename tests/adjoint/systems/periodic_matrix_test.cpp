@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "hbar/adjoint/trajectory/history.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/trajectory_residual.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/numerics.h"
@@ -22,29 +24,29 @@ using testing::spinning_problem;
 class PeriodicMatrixOfEveryIntegrator : public ::testing::TestWithParam<std::string> {};
 
 /// Makes the last state the initial one; the last rate follows from coordinates alone.
-void close(Simulator& simulator, Trajectory& at) {
+void close(const Horizon& horizon, Trajectory& at) {
   const int last = at.timeline.last_stage();
   at.q.col(0) = at.q.col(last);
-  StagePoint<double> end(simulator.model());
-  simulator.set_point(at, last, end);
+  StagePoint<double> end(horizon.model());
+  History(horizon.model()).set_point(at, last, end);
   at.qdot.col(0) = end.qdot;
 }
 
 void expect_derivative(Problem problem) {
-  Trajectory at = problem.simulator.rollout(problem.inputs).trajectory();
+  Trajectory at = simulate(problem.horizon, problem.inputs).trajectory();
   const int last = at.timeline.last_stage();
-  TrajectoryResidual residual(problem.simulator);
-  close(problem.simulator, at);
+  TrajectoryResidual residual(problem.horizon);
+  close(problem.horizon, at);
   residual.evaluate(at);
-  Linearizer linearizer(problem.simulator);
+  Linearizer linearizer(problem.horizon);
   const solvers::SparseMatrix H =
-      periodic_matrix(problem.simulator.model(), at, linearizer.linearize(at));
+      periodic_matrix(problem.horizon.model(), at, linearizer.linearize(at));
   for (const unsigned seed : {1U, 2U}) {
     const Eigen::VectorXd direction = Random(seed).vector(H.cols());
     const auto along = [&](const Eigen::VectorXd& e) -> Eigen::VectorXd {
       Trajectory moved = at;
       moved.q.rightCols(last).reshaped() += e[0] * direction;
-      close(problem.simulator, moved);
+      close(problem.horizon, moved);
       return residual.evaluate(moved);
     };
     EXPECT_LT(relative_gap(H * direction, differences(along, Eigen::VectorXd::Zero(1), 1e-4)),
@@ -64,10 +66,10 @@ TEST_P(PeriodicMatrixOfEveryIntegrator, IsSoForATrajectoryOfOneStep) {
 
 TEST_P(PeriodicMatrixOfEveryIntegrator, HasBlocksAboveTheDiagonalInTheLastColumnsAlone) {
   Problem problem = driven_pendulum(GetParam(), 12);
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-  Linearizer linearizer(problem.simulator);
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  Linearizer linearizer(problem.horizon);
   const Linearization& system = linearizer.linearize(trajectory);
-  const solvers::SparseMatrix P = periodic_matrix(problem.simulator.model(), trajectory, system);
+  const solvers::SparseMatrix P = periodic_matrix(problem.horizon.model(), trajectory, system);
   const solvers::SparseMatrix& H = system.H.matrix();
   const auto stage_of = [](Eigen::Index index) { return static_cast<int>(index / 2) + 1; };
   // A rate looks back on two steps of two stages at most.
@@ -90,9 +92,9 @@ TEST_P(PeriodicMatrixOfEveryIntegrator, HasBlocksAboveTheDiagonalInTheLastColumn
 
 TEST(PeriodicMatrix, RefusesAMotionThatEndsInAnotherChart) {
   Problem problem = spinning_problem("bdf1");
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
   ASSERT_EQ(trajectory.chart_switches.size() % 2, 1U);
-  EXPECT_THROW(refuse_changed_charts(problem.simulator.model(), trajectory), InvalidInput);
+  EXPECT_THROW(refuse_changed_charts(problem.horizon.model(), trajectory), InvalidInput);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PeriodicMatrixOfEveryIntegrator,

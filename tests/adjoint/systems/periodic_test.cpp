@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "hbar/adjoint/derivatives/tangent.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/input_vector.h"
 #include "tests/support/periodic_problems.h"
@@ -28,24 +30,24 @@ class PeriodicOfEveryIntegrator : public ::testing::TestWithParam<std::string> {
 
 TEST_P(PeriodicOfEveryIntegrator, ClosesAndIsASimulation) {
   Problem problem = driven_pendulum(GetParam(), 25);
-  const PeriodicOrbit orbit = solve_periodic(problem.simulator, problem.inputs);
+  const PeriodicOrbit orbit = solve_periodic(problem.horizon, problem.inputs);
   const Trajectory& found = orbit.trajectory;
   const int last = found.timeline.last_stage();
   EXPECT_EQ(found.q.col(last), found.q.col(0));
   EXPECT_EQ(found.qdot.col(last), found.qdot.col(0));
   EXPECT_GT(orbit.mismatch, 1e-4);  // the simulated periods alone had not closed
   EXPECT_LE(orbit.newton.iterations, 8);
-  const Trajectory simulated = problem.simulator.rollout(found.inputs).trajectory();
+  const Trajectory simulated = simulate(problem.horizon, found.inputs).trajectory();
   EXPECT_LT((simulated.q - found.q).lpNorm<Eigen::Infinity>(), 1e-9);
   EXPECT_LT((simulated.qdot - found.qdot).lpNorm<Eigen::Infinity>(), 1e-8);
 }
 
 TEST_P(PeriodicOfEveryIntegrator, IsWhereALongSimulationEnds) {
   Problem problem = driven_pendulum(GetParam(), 25);
-  const PeriodicOrbit orbit = solve_periodic(problem.simulator, problem.inputs);
+  const PeriodicOrbit orbit = solve_periodic(problem.horizon, problem.inputs);
   Inputs inputs = problem.inputs;
   for (int period = 0; period < 60; ++period) {
-    const Trajectory trajectory = problem.simulator.rollout(inputs).trajectory();
+    const Trajectory trajectory = simulate(problem.horizon, inputs).trajectory();
     inputs.q0 = trajectory.q_at_step(25);
     inputs.qdot0 = trajectory.qdot_at_step(25);
   }
@@ -67,15 +69,15 @@ double oscillator_error(const std::string& integrator, int steps) {
       testing::body_at(Eigen::Vector3d::Zero(), mass, Eigen::Vector3d::Constant(0.1), "mass"));
   builder.add_motor({.link = link, .kind = Motor::Kind::kForce});
   const double h = 2.0 * std::numbers::pi / omega / steps;
-  Simulator simulator(builder.build(), {}, {.integrator = integrator, .h = h, .steps = steps});
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon(builder.build(), {}, {.integrator = integrator, .h = h, .steps = steps});
+  Inputs inputs = horizon.nominal_inputs();
   // A control acts during a whole step: BDF balances forces at its end, SDIRK2 within it.
   for (int k = 0; k < steps; ++k) {
     inputs.u(0, k) = integrator == "sdirk2"
                          ? (std::sin(omega * h * (k + 1)) - std::sin(omega * h * k)) / (omega * h)
                          : std::cos(omega * h * (k + 1));
   }
-  const PeriodicOrbit orbit = solve_periodic(simulator, inputs);
+  const PeriodicOrbit orbit = solve_periodic(horizon, inputs);
   using namespace std::complex_literals;
   const std::complex<double> answer =
       1.0 / (stiffness - mass * omega * omega + 1.0i * damping * omega);
@@ -97,13 +99,13 @@ TEST_P(PeriodicOfEveryIntegrator, ConvergesToTheOscillatorsAnswerWithItsOrder) {
 
 /// Ψ of the orbit near given inputs.
 double orbit_value(Problem& problem, const Inputs& inputs) {
-  const PeriodicOrbit orbit = solve_periodic(problem.simulator, inputs);
-  return problem.objective.value(problem.simulator.values(orbit.trajectory));
+  const PeriodicOrbit orbit = solve_periodic(problem.horizon, inputs);
+  return problem.objective.value(read_values(problem.horizon, orbit.trajectory));
 }
 
 TEST_P(PeriodicOfEveryIntegrator, HasTheExactGradientByEveryClass) {
   Problem problem = driven_pendulum(GetParam(), 20);
-  PeriodicSolver solver(problem.simulator);
+  PeriodicSolver solver(problem.horizon);
   const PeriodicOrbit orbit = solver.solve(problem.inputs);
   const Gradient gradient = solver.gradient(orbit.trajectory, problem.objective);
   EXPECT_EQ(gradient.q0, Eigen::VectorXd::Zero(2));
@@ -112,7 +114,7 @@ TEST_P(PeriodicOfEveryIntegrator, HasTheExactGradientByEveryClass) {
   problem.inputs.qdot0 = orbit.trajectory.inputs.qdot0;
   const Eigen::VectorXd x = flatten(problem.inputs);
   int classes = 0;
-  for (const InputClass& entries : input_classes(problem.simulator, problem.inputs)) {
+  for (const InputClass& entries : input_classes(problem.horizon, problem.inputs)) {
     if (entries.name == "q0" || entries.name == "qdot0") {
       continue;
     }
@@ -135,20 +137,20 @@ TEST_P(PeriodicOfEveryIntegrator, HasTheExactGradientByEveryClass) {
 /// initial state that follows from its monodromy matrix, w = Φ w + s.
 double derivative_by_monodromy(Problem& problem, const Trajectory& orbit, const Eigen::VectorXd& dp,
                                const Eigen::VectorXd& du) {
-  Simulator& simulator = problem.simulator;
-  const int n = simulator.model().dof();
-  Directions d = Directions::zero(simulator, 2 * n + 1);
+  const Horizon& horizon = problem.horizon;
+  const int n = horizon.model().dof();
+  Directions d = Directions::zero(horizon, 2 * n + 1);
   d.q0.leftCols(n).setIdentity();
   d.qdot0.middleCols(n, n).setIdentity();
   d.p.col(2 * n) = dp;
   d.u.col(2 * n) = du;
-  TangentSweep sweep(simulator);
+  TangentSweep sweep(horizon);
   const Tangents tangents = sweep.push_forward(orbit, d);
   Eigen::MatrixXd end(2 * n, 2 * n + 1);
   end << tangents.q.bottomRows(n), tangents.qdot.bottomRows(n);
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(2 * n, 2 * n);
   const Eigen::VectorXd w = (I - end.leftCols(2 * n)).partialPivLu().solve(end.col(2 * n));
-  const TrajectoryPartials partials = problem.objective.partials(simulator.values(orbit));
+  const TrajectoryPartials partials = problem.objective.partials(read_values(horizon, orbit));
   double out = directional_derivative(partials, tangents, d, 2 * n);
   for (int i = 0; i < 2 * n; ++i) {
     out += w[i] * directional_derivative(partials, tangents, d, i);
@@ -159,7 +161,7 @@ double derivative_by_monodromy(Problem& problem, const Trajectory& orbit, const 
 TEST_P(PeriodicOfEveryIntegrator, HasTheTangentsDerivativeThroughTheMonodromyMatrix) {
   for (const bool contact : {false, true}) {
     Problem problem = driven_pendulum(GetParam(), 20, contact);
-    PeriodicSolver solver(problem.simulator);
+    PeriodicSolver solver(problem.horizon);
     const Trajectory orbit = solver.solve(problem.inputs).trajectory;
     const Gradient gradient = solver.gradient(orbit, problem.objective);
     Random random(11);
@@ -176,12 +178,12 @@ TEST_P(PeriodicOfEveryIntegrator, HasTheTangentsDerivativeThroughTheMonodromyMat
 
 TEST_P(PeriodicOfEveryIntegrator, HasTaylorRemaindersOfSecondOrder) {
   Problem problem = driven_pendulum(GetParam(), 20);
-  PeriodicSolver solver(problem.simulator);
+  PeriodicSolver solver(problem.horizon);
   const PeriodicOrbit orbit = solver.solve(problem.inputs);
   const Gradient gradient = solver.gradient(orbit.trajectory, problem.objective);
   const Eigen::VectorXd x = flatten(problem.inputs);
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(x.size());
-  for (const InputClass& entries : input_classes(problem.simulator, problem.inputs)) {
+  for (const InputClass& entries : input_classes(problem.horizon, problem.inputs)) {
     if (entries.name == "joint_transform" || entries.name == "u") {
       Random random(2);
       direction(entries.entries) = random.vector(static_cast<Eigen::Index>(entries.entries.size()));
@@ -195,7 +197,7 @@ TEST_P(PeriodicOfEveryIntegrator, HasTaylorRemaindersOfSecondOrder) {
 
 TEST(Periodic, AnalysesItsPatternOnce) {
   Problem problem = driven_pendulum("bdf2", 20);
-  PeriodicSolver solver(problem.simulator);
+  PeriodicSolver solver(problem.horizon);
   for (int i = 0; i < 3; ++i) {
     problem.inputs.u(0, 3) += 0.1;
     const PeriodicOrbit orbit = solver.solve(problem.inputs);
@@ -216,9 +218,8 @@ TEST(Periodic, FindsARotationThatAdvances) {
       testing::body_at({0.0, 0.0, -0.05}, 1.0, Eigen::Vector3d::Constant(0.05), "rotor"));
   builder.add_motor({.link = link, .kind = Motor::Kind::kForce});
   const int steps = 40;
-  Simulator simulator(builder.build(), {},
-                      {.integrator = "bdf2", .h = 1.0 / steps, .steps = steps});
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon(builder.build(), {}, {.integrator = "bdf2", .h = 1.0 / steps, .steps = steps});
+  Inputs inputs = horizon.nominal_inputs();
   const double turn = 2.0 * std::numbers::pi;
   for (int k = 0; k < steps; ++k) {
     inputs.u(0, k) = 0.5 * turn + 0.4 * std::sin(turn * (k + 1) / steps);
@@ -227,8 +228,8 @@ TEST(Periodic, FindsARotationThatAdvances) {
   PeriodicOptions options;
   options.warm_up = 8;
   options.advance = Eigen::VectorXd::Constant(1, turn);
-  const PeriodicOrbit orbit = solve_periodic(simulator, inputs, options);
-  const Trajectory again = simulator.rollout(orbit.trajectory.inputs).trajectory();
+  const PeriodicOrbit orbit = solve_periodic(horizon, inputs, options);
+  const Trajectory again = simulate(horizon, orbit.trajectory.inputs).trajectory();
   EXPECT_NEAR(again.q_at_step(steps)[0] - again.q_at_step(0)[0], turn, 1e-9);
   EXPECT_NEAR(again.qdot_at_step(steps)[0], again.qdot_at_step(0)[0], 1e-8);
 }
@@ -240,11 +241,11 @@ TEST(Periodic, NamesTheCoordinateThatNothingHolds) {
   builder.add_link(
       -1, joint,
       testing::body_at(Eigen::Vector3d::Zero(), 1.0, Eigen::Vector3d::Constant(0.1), "mass"));
-  Simulator simulator(builder.build(), {}, {.integrator = "bdf1", .h = 0.1, .steps = 10});
-  Inputs inputs = simulator.nominal_inputs();
+  Horizon horizon(builder.build(), {}, {.integrator = "bdf1", .h = 0.1, .steps = 10});
+  Inputs inputs = horizon.nominal_inputs();
   inputs.qdot0[0] = 1.0;
   try {
-    (void)solve_periodic(simulator, inputs);
+    (void)solve_periodic(horizon, inputs);
     FAIL() << "a singular system was solved";
   } catch (const NumericalFailure& failure) {
     const std::string message = failure.what();
@@ -261,7 +262,7 @@ TEST(Periodic, SaysWhereNewtonsMethodStopped) {
   options.warm_up = 1;
   problem.inputs.q0[0] = 2.5;
   try {
-    (void)solve_periodic(problem.simulator, problem.inputs, options);
+    (void)solve_periodic(problem.horizon, problem.inputs, options);
     FAIL() << "one correction sufficed";
   } catch (const NumericalFailure& failure) {
     const std::string message = failure.what();
@@ -274,10 +275,10 @@ TEST(Periodic, RefusesWrongOptions) {
   Problem problem = driven_pendulum("bdf1", 5);
   PeriodicOptions options;
   options.warm_up = 0;
-  EXPECT_THROW(PeriodicSolver(problem.simulator, options), InvalidInput);
+  EXPECT_THROW(PeriodicSolver(problem.horizon, options), InvalidInput);
   options.warm_up = 1;
   options.advance = Eigen::VectorXd::Zero(3);
-  EXPECT_THROW(PeriodicSolver(problem.simulator, options), InvalidInput);
+  EXPECT_THROW(PeriodicSolver(problem.horizon, options), InvalidInput);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PeriodicOfEveryIntegrator,

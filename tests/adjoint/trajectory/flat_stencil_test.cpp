@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hbar/adjoint/trajectory/history.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "tests/support/small_problems.h"
 
 namespace hbar {
@@ -62,10 +63,10 @@ TEST_P(FlatStencilOfEveryIntegrator, GivesTheRatesOfTheTwoLevelDefinition) {
 
 TEST_P(FlatStencilOfEveryIntegrator, IsTheScalarOneWhereANodeKeepsItsChart) {
   Problem problem = testing::spinning_problem(GetParam());
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
   ASSERT_EQ(trajectory.chart_switches.size(), 1U);
   const ChartSwitch& change = trajectory.chart_switches.front();
-  const Model& model = problem.simulator.model();
+  const Model& model = problem.horizon.model();
   EXPECT_TRUE(nodes_with_chart_switch(trajectory, change.stage).empty());
   EXPECT_EQ(nodes_with_chart_switch(trajectory, change.stage + 1), std::vector<int>{change.node});
   const auto plain = flat_stencil(trajectory.timeline, change.stage);
@@ -79,8 +80,8 @@ TEST_P(FlatStencilOfEveryIntegrator, IsTheScalarOneWhereANodeKeepsItsChart) {
 
 TEST_P(FlatStencilOfEveryIntegrator, FollowsRatesThroughAChangeOfChart) {
   Problem problem = testing::spinning_problem(GetParam());
-  const Trajectory base = problem.simulator.rollout(problem.inputs).trajectory();
-  const Model& model = problem.simulator.model();
+  const Trajectory base = simulate(problem.horizon, problem.inputs).trajectory();
+  const Model& model = problem.horizon.model();
   const int node = base.chart_switches.front().node;
   const int s = base.chart_switches.front().stage + 1;
   const int first = model.tree().node(node).coordinates.begin;

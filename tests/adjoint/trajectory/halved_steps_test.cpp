@@ -6,6 +6,8 @@
 
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/derivatives/tangent.h"
+#include "hbar/adjoint/trajectory/simulator.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "tests/support/small_problems.h"
 
 namespace hbar {
@@ -14,10 +16,10 @@ namespace {
 /// The small problem with so few Newton corrections that some steps must be halved.
 Problem starved_problem(const std::string& integrator, double speed) {
   Problem problem = testing::small_problem(integrator);
-  SimulationOptions options = problem.simulator.options();
+  SimulationOptions options = problem.horizon.options();
   options.h = 0.02;
   options.newton.max_iter = 4;
-  problem.simulator = Simulator(problem.simulator.model(), problem.simulator.parameters(), options);
+  problem.horizon = Horizon(problem.horizon.model(), problem.horizon.parameters(), options);
   problem.inputs.qdot0 *= speed;
   return problem;
 }
@@ -29,7 +31,7 @@ class HalvedStepsOfEveryIntegrator : public ::testing::TestWithParam<std::string
   HalvedStepsOfEveryIntegrator() {
     for (const double speed : {4.0, 3.6, 4.4, 3.2, 4.8}) {
       problem_ = starved_problem(GetParam(), speed);
-      trajectory_ = problem_.simulator.rollout(problem_.inputs).trajectory();
+      trajectory_ = simulate(problem_.horizon, problem_.inputs).trajectory();
       draw_direction();
       if (moved(2e-5).timeline == trajectory_.timeline &&
           moved(-2e-5).timeline == trajectory_.timeline) {
@@ -42,7 +44,7 @@ class HalvedStepsOfEveryIntegrator : public ::testing::TestWithParam<std::string
   void draw_direction() {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    direction_ = Directions::zero(problem_.simulator, 1);
+    direction_ = Directions::zero(problem_.horizon, 1);
     for (Eigen::MatrixXd* part :
          {&direction_.p, &direction_.u, &direction_.q0, &direction_.qdot0}) {
       *part = part->unaryExpr([&](double) { return uniform(random); });
@@ -56,7 +58,7 @@ class HalvedStepsOfEveryIntegrator : public ::testing::TestWithParam<std::string
     inputs.u.reshaped() += step * direction_.u.col(0);
     inputs.q0 += step * direction_.q0.col(0);
     inputs.qdot0 += step * direction_.qdot0.col(0);
-    return problem_.simulator.rollout(inputs).trajectory();
+    return simulate(problem_.horizon, inputs).trajectory();
   }
 
   Problem problem_ = starved_problem(GetParam(), 4.0);
@@ -67,11 +69,11 @@ class HalvedStepsOfEveryIntegrator : public ::testing::TestWithParam<std::string
 TEST_P(HalvedStepsOfEveryIntegrator, GradientIsThatOfTheStepsTaken) {
   Timeline regular;
   for (int k = 0; k < trajectory_.step_count(); ++k) {
-    regular.append(find_integrator(GetParam()), k, problem_.simulator.options().h);
+    regular.append(find_integrator(GetParam()), k, problem_.horizon.options().h);
   }
   ASSERT_GT(trajectory_.timeline.stage_count(), regular.stage_count());
 
-  const Gradient g = gradient(problem_.simulator, trajectory_, problem_.objective);
+  const Gradient g = gradient(problem_.horizon, trajectory_, problem_.objective);
   const double slope = g.p.dot(direction_.p.col(0)) + g.u.reshaped().dot(direction_.u.col(0)) +
                        g.q0.dot(direction_.q0.col(0)) + g.qdot0.dot(direction_.qdot0.col(0));
   const auto difference = [&](double step) {
@@ -80,7 +82,7 @@ TEST_P(HalvedStepsOfEveryIntegrator, GradientIsThatOfTheStepsTaken) {
     EXPECT_EQ(ahead.timeline, trajectory_.timeline);
     EXPECT_EQ(behind.timeline, trajectory_.timeline);
     const auto value = [&](const Trajectory& t) {
-      return problem_.objective.value(problem_.simulator.values(t));
+      return problem_.objective.value(read_values(problem_.horizon, t));
     };
     return (value(ahead) - value(behind)) / (2.0 * step);
   };
@@ -89,11 +91,12 @@ TEST_P(HalvedStepsOfEveryIntegrator, GradientIsThatOfTheStepsTaken) {
 }
 
 TEST_P(HalvedStepsOfEveryIntegrator, TangentsAgreeWithTheAdjoint) {
-  Simulator& simulator = problem_.simulator;
-  const TrajectoryPartials partials = problem_.objective.partials(simulator.values(trajectory_));
-  AdjointSweep sweep(simulator);
+  const Horizon& horizon = problem_.horizon;
+  const TrajectoryPartials partials =
+      problem_.objective.partials(read_values(horizon, trajectory_));
+  AdjointSweep sweep(horizon);
   const Gradient g = sweep.pull_back(trajectory_, partials);
-  TangentSweep forward(simulator);
+  TangentSweep forward(horizon);
   const Tangents tangents = forward.push_forward(trajectory_, direction_);
   const double slope = g.p.dot(direction_.p.col(0)) + g.u.reshaped().dot(direction_.u.col(0)) +
                        g.q0.dot(direction_.q0.col(0)) + g.qdot0.dot(direction_.qdot0.col(0));

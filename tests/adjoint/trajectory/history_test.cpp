@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "hbar/adjoint/trajectory/integrator.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/chart.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random_model.h"
+#include "tests/support/scenes.h"
 
 namespace hbar {
 namespace {
@@ -209,6 +212,30 @@ TEST_P(HistoryOfEveryIntegrator, ScatterAddsToWhatIsThere) {
 
 INSTANTIATE_TEST_SUITE_P(All, HistoryOfEveryIntegrator, ::testing::Values("bdf1", "sdirk2", "bdf2"),
                          [](const auto& run) { return run.param; });
+
+TEST(History, SetsAPointThatSolvesItsStage) {
+  const Model model = testing::random_model(32);
+  testing::Random random(2);
+  for (const Integrator& integrator : integrators()) {
+    const Horizon horizon =
+        testing::make_horizon(model, testing::options_of(integrator.name, 0.01, 3));
+    Inputs inputs = horizon.nominal_inputs();
+    inputs.q0 = random.vector(model.dof(), 0.3);
+    const Trajectory trajectory = simulate(horizon, inputs).trajectory();
+    StagePoint<double> point(model);
+    StageResidual<double> residual(model);
+    History history(model);
+    const auto mechanism = nominal_mechanism<double>(model);
+    Eigen::VectorXd g(model.dof());
+    for (int s = 1; s < trajectory.timeline.stage_count(); ++s) {
+      history.set_point(trajectory, s, point);
+      residual.residual(mechanism, point, g);
+      EXPECT_LT(g.norm(), horizon.options().newton.tol) << integrator.name << ' ' << s;
+      EXPECT_EQ(point.q, trajectory.q.col(s));
+      EXPECT_EQ(point.qdot, trajectory.qdot.col(s));
+    }
+  }
+}
 
 }  // namespace
 }  // namespace hbar

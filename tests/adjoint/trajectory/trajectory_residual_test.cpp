@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hbar/adjoint/derivatives/linearization.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
 #include "tests/support/small_problems.h"
@@ -29,20 +30,20 @@ Trajectory perturbed(const Trajectory& solution, double size) {
 
 TEST_P(TrajectoryResidualOfEveryIntegrator, VanishesOnASimulatedTrajectory) {
   Problem problem = small_problem(GetParam());
-  Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+  Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
   const Eigen::MatrixXd rates = trajectory.qdot;
-  TrajectoryResidual residual(problem.simulator);
+  TrajectoryResidual residual(problem.horizon);
   EXPECT_LT(residual.evaluate(trajectory).lpNorm<Eigen::Infinity>(), 1e-9);
   EXPECT_EQ(trajectory.qdot, rates);
 }
 
 TEST_P(TrajectoryResidualOfEveryIntegrator, HasTheDerivativeHAlsoOffTheSolution) {
   const auto check = [](Problem problem, double size) {
-    const Trajectory solution = problem.simulator.rollout(problem.inputs).trajectory();
+    const Trajectory solution = simulate(problem.horizon, problem.inputs).trajectory();
     Trajectory at = perturbed(solution, size);
-    TrajectoryResidual residual(problem.simulator);
+    TrajectoryResidual residual(problem.horizon);
     EXPECT_GT(residual.evaluate(at).lpNorm<Eigen::Infinity>(), 1e-6);
-    Linearizer linearizer(problem.simulator);
+    Linearizer linearizer(problem.horizon);
     const solvers::SparseMatrix H = linearizer.linearize(at).H.matrix();
     const Eigen::Index stages = at.q.cols() - 1;
     Random random(3);

@@ -7,6 +7,7 @@
 #include "hbar/adjoint/derivatives/check_gradient.h"
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/derivatives/tangent.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
@@ -45,10 +46,10 @@ TermPointer every_measured_row() {
 /// The contact model, measured in every way.
 Problem measured_problem(const std::string& integrator) {
   Problem problem = contact_problem(integrator, 0.01, 30);
-  const Model& model = problem.simulator.model();
+  const Model& model = problem.horizon.model();
   const int lower = model.find_link("lower");
   const int box = model.find_link("box");
-  SimulationOptions options = problem.simulator.options();
+  SimulationOptions options = problem.horizon.options();
   options.measurements = {
       PointVelocity{"tip speed", lower, {0.1, 0.02, 0.0}},
       Orientation{"tilt", box},
@@ -60,43 +61,43 @@ Problem measured_problem(const std::string& integrator) {
       MotorPower{"power", 0},
       CentreOfMass{"centre"},
       LinearMomentum{"momentum"}};
-  problem.simulator =
-      Simulator(problem.simulator.shared_model(), problem.simulator.parameters(), options);
+  problem.horizon = Horizon(problem.horizon.shared_model(), problem.horizon.parameters(), options);
   problem.objective = Objective(every_measured_row());
   return problem;
 }
 
 TEST(ValueReader, ReadsMeasurementsWithTheControlOfTheStepThatEnds) {
   Problem problem = measured_problem("bdf1");
-  Simulator& simulator = problem.simulator;
-  const TrajectoryValues values = simulator.values(simulator.rollout(problem.inputs).trajectory());
-  ASSERT_EQ(values.measured.rows(), simulator.measured_count());
+  const Horizon& horizon = problem.horizon;
+  const TrajectoryValues values =
+      read_values(horizon, simulate(horizon, problem.inputs).trajectory());
+  ASSERT_EQ(values.measured.rows(), horizon.measured_count());
   ASSERT_EQ(values.measured.cols(), 31);
-  EXPECT_EQ(simulator.measured_count(), 3 + 3 + 1 + 1 + 4 + 4 + 1 + 1 + 3 + 3);
+  EXPECT_EQ(horizon.measured_count(), 3 + 3 + 1 + 1 + 4 + 4 + 1 + 1 + 3 + 3);
   // Motor 0 is a force without a range: its power is u q̇.
-  const int row = simulator.measured_index("power");
-  const int c = simulator.model().coordinates_of_link(simulator.model().find_link("upper")).begin;
+  const int row = horizon.measured_index("power");
+  const int c = horizon.model().coordinates_of_link(horizon.model().find_link("upper")).begin;
   EXPECT_DOUBLE_EQ(values.measured(row, 0), values.u(0, 0) * values.qdot(c, 0));
   for (int k = 1; k <= 30; ++k) {
     EXPECT_DOUBLE_EQ(values.measured(row, k), values.u(0, k - 1) * values.qdot(c, k));
   }
-  const int x = simulator.measured_index("centre.x");
-  EXPECT_EQ(simulator.measured_names()[static_cast<std::size_t>(x)], "centre.x");
-  EXPECT_GT(values.measured.row(simulator.measured_index("ground.normal")).maxCoeff(), 1.0);
-  EXPECT_GT(values.measured.row(simulator.measured_index("press.normal")).maxCoeff(), 1.0);
+  const int x = horizon.measured_index("centre.x");
+  EXPECT_EQ(horizon.measured_names()[static_cast<std::size_t>(x)], "centre.x");
+  EXPECT_GT(values.measured.row(horizon.measured_index("ground.normal")).maxCoeff(), 1.0);
+  EXPECT_GT(values.measured.row(horizon.measured_index("press.normal")).maxCoeff(), 1.0);
 }
 
 TEST(ValueReader, FindsRowsByNameAndSuggestsTheNearest) {
   const Problem problem = measured_problem("bdf1");
   EXPECT_EQ(testing::message_of<InvalidInput>(
-                [&] { static_cast<void>(problem.simulator.measured_index("centre.w")); }),
+                [&] { static_cast<void>(problem.horizon.measured_index("centre.w")); }),
             "there is no measured row 'centre.w'; did you mean 'centre.x'?");
   const Problem plain = contact_problem("bdf1", 0.01, 3);
-  EXPECT_EQ(plain.simulator.measured_count(), 0);
+  EXPECT_EQ(plain.horizon.measured_count(), 0);
   SimulationOptions options;
   options.measurements = {PointVelocity{"tip", 9}};
   EXPECT_EQ(testing::message_of<InvalidInput>([&] {
-              Simulator(plain.simulator.shared_model(), plain.simulator.parameters(), options);
+              Horizon(plain.horizon.shared_model(), plain.horizon.parameters(), options);
             }),
             "measurement 'tip': link is 9; it must be 0 … 3");
 }
@@ -111,9 +112,9 @@ TEST(ValueReader, LeavesMeasurementsGradientsThatPassInEveryClass) {
 
 TEST_P(MeasuredByEveryIntegrator, HaveTheSweepsGradientFromTheAssembledAdjoint) {
   Problem problem = measured_problem(GetParam());
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
-  const Gradient swept = gradient(problem.simulator, trajectory, problem.objective);
-  const Gradient ours = AssembledAdjoint(problem.simulator).gradient(trajectory, problem.objective);
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  const Gradient swept = gradient(problem.horizon, trajectory, problem.objective);
+  const Gradient ours = AssembledAdjoint(problem.horizon).gradient(trajectory, problem.objective);
   EXPECT_EQ(ours.value, swept.value);
   EXPECT_LT((ours.p - swept.p).norm(), 1e-10 * swept.p.norm());
   EXPECT_LT((ours.u - swept.u).norm(), 1e-10 * swept.u.norm());
@@ -123,17 +124,17 @@ TEST_P(MeasuredByEveryIntegrator, HaveTheSweepsGradientFromTheAssembledAdjoint) 
 
 TEST_P(MeasuredByEveryIntegrator, HaveTangentsThatTheAdjointTransposes) {
   Problem problem = measured_problem(GetParam());
-  const Trajectory trajectory = problem.simulator.rollout(problem.inputs).trajectory();
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
   Random random(4);
-  TrajectoryPartials partials(problem.simulator.values(trajectory));
+  TrajectoryPartials partials(read_values(problem.horizon, trajectory));
   partials.measured = random.matrix(partials.measured.rows(), partials.measured.cols());
-  const Gradient g = AdjointSweep(problem.simulator).pull_back(trajectory, partials);
-  Directions directions = Directions::zero(problem.simulator, 2);
+  const Gradient g = AdjointSweep(problem.horizon).pull_back(trajectory, partials);
+  Directions directions = Directions::zero(problem.horizon, 2);
   directions.p = random.matrix(directions.p.rows(), 2);
   directions.u = random.matrix(directions.u.rows(), 2);
   directions.q0 = random.matrix(directions.q0.rows(), 2);
   directions.qdot0 = random.matrix(directions.qdot0.rows(), 2);
-  const Tangents tangents = TangentSweep(problem.simulator).push_forward(trajectory, directions);
+  const Tangents tangents = TangentSweep(problem.horizon).push_forward(trajectory, directions);
   ASSERT_EQ(tangents.measured.rows(), partials.measured.size());
   for (int i = 0; i < 2; ++i) {
     const double backward = g.p.dot(directions.p.col(i)) + g.u.reshaped().dot(directions.u.col(i)) +

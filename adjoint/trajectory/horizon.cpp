@@ -1,0 +1,116 @@
+#include "hbar/adjoint/trajectory/horizon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hbar/adjoint/trajectory/integrator.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/base/nearest_name.h"
+
+namespace hbar {
+namespace {
+
+double bytes_per_stage(const Model& model, bool with_factors) {
+  const double n = model.dof();
+  return 8.0 * (4.0 * n + model.control_count() + 16.0 + (with_factors ? n * n + n : 0.0));
+}
+
+void check_options(const Model& model, const SimulationOptions& options) {
+  if (!(options.h > 0.0) || !std::isfinite(options.h)) {
+    throw InvalidInput(concat("time step h is ", options.h, "; it must be positive"));
+  }
+  if (options.steps < 1) {
+    throw InvalidInput(concat("steps is ", options.steps, "; it must be at least 1"));
+  }
+  for (const int step : options.restarts) {
+    if (step < 0 || step >= options.steps) {
+      throw InvalidInput(
+          concat("restart at step ", step, "; there are steps 0 to ", options.steps - 1));
+    }
+  }
+  const double bytes = options.steps * bytes_per_stage(model, false);
+  if (bytes > options.max_memory) {
+    throw InvalidInput(concat(options.steps, " steps of ", model.dof(), " coordinates take about ",
+                              bytes * 1e-9, " GB; the limit is ", options.max_memory * 1e-9,
+                              " GB: take fewer steps or raise max_memory"));
+  }
+  if (model.dof() == 0) {
+    throw InvalidInput("the model has no coordinate: every joint is fixed");
+  }
+}
+
+void check_input(const Eigen::MatrixXd& value, std::string_view name, Eigen::Index rows,
+                 Eigen::Index columns) {
+  if (value.rows() != rows || value.cols() != columns) {
+    throw InvalidInput(concat(name, " is ", value.rows(), " x ", value.cols(), "; it must be ",
+                              rows, " x ", columns));
+  }
+  for (Eigen::Index j = 0; j < columns; ++j) {
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      if (!std::isfinite(value(i, j))) {
+        throw InvalidInput(
+            concat(name, "(", i, ", ", j, ") is ", value(i, j), "; it must be finite"));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Horizon::Horizon(Model model, ParameterSet parameters, SimulationOptions options)
+    : Horizon(std::make_shared<const Model>(std::move(model)), std::move(parameters),
+              std::move(options)) {}
+
+Horizon::Horizon(std::shared_ptr<const Model> model, ParameterSet parameters,
+                 SimulationOptions options) {
+  Data data{.model = std::move(model),
+            .parameters = std::move(parameters),
+            .options = std::move(options),
+            .measured_names = {}};
+  data.integrator = &find_integrator(data.options.integrator);
+  check_options(*data.model, data.options);
+  check_measurements(*data.model, data.options.measurements);
+  for (const Measurement& measurement : data.options.measurements) {
+    const std::vector<std::string> rows = row_names(*data.model, measurement);
+    data.measured_names.insert(data.measured_names.end(), rows.begin(), rows.end());
+  }
+  const double stages = 2.0 * data.options.steps;
+  data.keeps_factors = data.options.keep_factors &&
+                       stages * bytes_per_stage(*data.model, true) <= data.options.max_memory;
+  data_ = std::make_shared<const Data>(std::move(data));
+}
+
+Horizon Horizon::with(SimulationOptions options) const {
+  return {shared_model(), parameters(), std::move(options)};
+}
+
+Inputs Horizon::nominal_inputs() const {
+  return {parameters().nominal(), Eigen::MatrixXd::Zero(model().control_count(), steps()),
+          Eigen::VectorXd::Zero(model().dof()), Eigen::VectorXd::Zero(model().dof())};
+}
+
+std::shared_ptr<const Mechanism<double>> Horizon::mechanism(const Eigen::VectorXd& p) const {
+  auto out = std::make_shared<Mechanism<double>>();
+  apply_parameters<double>(model(), parameters(), p, *out);
+  return out;
+}
+
+void Horizon::check(const Inputs& inputs) const {
+  check_input(inputs.p, "p", parameters().size(), 1);
+  check_input(inputs.u, "u", model().control_count(), steps());
+  check_input(inputs.q0, "q0", model().dof(), 1);
+  check_input(inputs.qdot0, "qdot0", model().dof(), 1);
+}
+
+int Horizon::measured_index(std::string_view name) const {
+  const std::vector<std::string>& names = measured_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw InvalidInput(
+        concat("there is no measured row '", name, "'; ", unknown_name_hint(name, names)));
+  }
+  return static_cast<int>(found - names.begin());
+}
+
+}  // namespace hbar

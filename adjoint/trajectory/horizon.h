@@ -1,0 +1,93 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hbar/adjoint/trajectory/inputs.h"
+#include "hbar/core/model/measurement.h"
+#include "hbar/core/parameters/parameters.h"
+#include "hbar/solvers/newton/newton.h"
+
+namespace hbar {
+
+struct Integrator;
+
+/// How to simulate.
+struct SimulationOptions {
+  std::string integrator = "bdf1";  ///< a name of integrators()
+  double h = 0.02;                  ///< time step, time
+  int steps = 100;                  ///< N
+  /// Steps at whose beginning a multistep method starts anew, as after an event; 0 … N − 1. BDF2
+  /// then takes a step of SDIRK2 there.
+  std::vector<int> restarts = {};
+  solvers::NewtonOptions newton = {};
+  /// Rows of TrajectoryValues::measured, for objectives and constraints to read.
+  std::vector<Measurement> measurements = {};
+  int max_halvings = 10;                    ///< of a step that does not converge; each is recorded
+  bool keep_factors = true;                 ///< for the adjoint; dropped if they exceed max_memory
+  double max_memory = 4e9;                  ///< bytes that a trajectory may take
+  const std::atomic<bool>* stop = nullptr;  ///< checked before each step
+};
+
+/// The set-up of a trajectory: a model, which of its parameters are free, and how to simulate it.
+/// Everything that computes trajectories, their values or their derivatives is made from one.
+///
+/// Immutable. Copies share what they hold and are cheap; any number of threads may read one.
+class Horizon {
+ public:
+  /// @throws InvalidInput for an unknown integrator, h or steps that are not positive, a horizon
+  ///         that would not fit into options.max_memory, or measurements that the model cannot have
+  Horizon(Model model, ParameterSet parameters, SimulationOptions options);
+  /// The same of a model that others use, too.
+  Horizon(std::shared_ptr<const Model> model, ParameterSet parameters, SimulationOptions options);
+
+  /// The same model and parameters, simulated otherwise.
+  /// @throws InvalidInput as the constructors
+  [[nodiscard]] Horizon with(SimulationOptions options) const;
+
+  [[nodiscard]] const Model& model() const { return *data_->model; }
+  [[nodiscard]] const std::shared_ptr<const Model>& shared_model() const { return data_->model; }
+  [[nodiscard]] const ParameterSet& parameters() const { return data_->parameters; }
+  [[nodiscard]] const SimulationOptions& options() const { return data_->options; }
+  [[nodiscard]] const Integrator& integrator() const { return *data_->integrator; }
+  /// N.
+  [[nodiscard]] int steps() const { return data_->options.steps; }
+  /// Whether trajectories keep the factors of their stages' Jacobians: asked for, and they fit.
+  [[nodiscard]] bool keeps_factors() const { return data_->keeps_factors; }
+
+  /// Parameters at their nominal values, controls and initial state zero.
+  [[nodiscard]] Inputs nominal_inputs() const;
+  /// The model's numbers with parameters applied.
+  ///
+  /// @param p  values of the parameters                                       [parameters]
+  /// @throws InvalidInput as apply_parameters
+  [[nodiscard]] std::shared_ptr<const Mechanism<double>> mechanism(const Eigen::VectorXd& p) const;
+  /// @throws InvalidInput naming the first input that has another shape or is not finite
+  void check(const Inputs& inputs) const;
+
+  /// Names of the rows of TrajectoryValues::measured: "NAME" or "NAME.x", … of each measurement.
+  [[nodiscard]] const std::vector<std::string>& measured_names() const {
+    return data_->measured_names;
+  }
+  [[nodiscard]] int measured_count() const { return static_cast<int>(measured_names().size()); }
+  /// The row of that name.
+  /// @throws InvalidInput naming the nearest existing name
+  [[nodiscard]] int measured_index(std::string_view name) const;
+
+ private:
+  struct Data {
+    std::shared_ptr<const Model> model;
+    ParameterSet parameters;
+    SimulationOptions options;
+    const Integrator* integrator = nullptr;
+    bool keeps_factors = true;
+    std::vector<std::string> measured_names;
+  };
+
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace hbar
