@@ -5,9 +5,6 @@
 namespace hbar {
 namespace {
 
-/// Room for touching points that is kept from the start; seldom do more touch at once.
-constexpr std::size_t kReserved = 1024;
-
 /// Coordinates above and of a node.
 std::vector<CoordinateRange> path_of(const Tree& tree, int node) {
   std::vector<CoordinateRange> path = tree.ancestors(node);
@@ -78,7 +75,7 @@ ContactForces<S>::ContactForces(const Model& model)
       takes_part_[static_cast<std::size_t>(contact.other)] = 1;
     }
   }
-  points_.reserve(std::min(static_cast<std::size_t>(points), kReserved));
+  points_.reserve(std::min(static_cast<std::size_t>(points), kReservedTouches));
   const Tree& tree = model.tree();
   for (int i = 0; i < model.link_count(); ++i) {
     paths_.push_back(path_of(tree, model.node_of_link(i)));

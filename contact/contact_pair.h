@@ -6,6 +6,9 @@
 
 namespace hbar {
 
+/// Room for touching points that is kept from the start; seldom do more touch at once.
+inline constexpr std::size_t kReservedTouches = 1024;
+
 template <Scalar S>
 using Matrix6 = Eigen::Matrix<S, 6, 6>;
 

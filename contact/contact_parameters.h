@@ -2,7 +2,7 @@
 
 #include "hbar/contact/contact_forces.h"
 #include "hbar/core/geometry/surface_points.h"
-#include "hbar/core/parameters/parameters.h"
+#include "hbar/core/parameters/applied.h"
 
 namespace hbar {
 
@@ -13,9 +13,11 @@ namespace hbar {
 ///               ∂(point)/∂p; a parameter may be visited any number of times, and what touches
 ///               nothing is not
 template <Scalar S, typename Visit>
-void for_each_point_change(const ContactForces<S>& contacts, const Mechanism<S>& mechanism,
-                           const ParameterSet& set, const Visit& visit) {
+void for_each_point_change(const ContactForces<S>& contacts, const Applied<S>& applied,
+                           const Visit& visit) {
   const Model& model = contacts.model();
+  const Mechanism<S>& mechanism = applied.mechanism;
+  const ParameterSet& set = applied.set;
   for (const ActivePair<S>& pair : contacts.active()) {
     const Contact& contact = model.contact(pair.contact);
     const Body& body = model.link(contact.link).body;
@@ -88,9 +90,9 @@ void for_each_point_change(const ContactForces<S>& contacts, const Mechanism<S>&
 ///
 /// @param visit  visit(index in p, contact, PairWrenches): one share of ∂(wrenches)/∂p
 template <Scalar S, typename Visit>
-void for_each_contact_change(const ContactForces<S>& contacts, const Mechanism<S>& mechanism,
-                             const ParameterSet& set, const Visit& visit) {
-  for_each_point_change(contacts, mechanism, set,
+void for_each_contact_change(const ContactForces<S>& contacts, const Applied<S>& applied,
+                             const Visit& visit) {
+  for_each_point_change(contacts, applied,
                         [&](int index, const ActivePair<S>& pair, const TouchingPoint<S>& point,
                             const PointChange<S>& by) {
                           const Contact& contact = contacts.model().contact(pair.contact);

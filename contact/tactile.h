@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hbar/contact/contact_forces.h"
+#include "hbar/core/parameters/applied.h"
 #include "hbar/core/parameters/link_pullback.h"
 
 namespace hbar {
@@ -10,44 +11,49 @@ namespace hbar {
 /// product. Points feel every body that some contact of the model has as its distance side, but
 /// their own; their forces act on nothing.
 ///
-/// Sized once, reused; readings allocate nothing.
+/// Borrows the model. Sized once, reused: nothing is allocated while no more than a thousand points
+/// touch at once. Holds its workspace and belongs to one thread at a time.
 template <Scalar S>
 class TactileReadings {
  public:
   explicit TactileReadings(const Model& model);
 
-  /// @param motion  poses and twists                                             (a is not read)
-  /// @param out     readings, force                                                   [tactile]
-  void readings(const Mechanism<S>& mechanism, const Motion<S>& motion,
-                Eigen::Ref<VectorX<S>> out) const;
-
-  /// Transposed derivative: weights y on the readings are added as gradients.
+  /// Finds what touches, once per instant, before the following.
   ///
-  /// @param y                weights                                                  [tactile]
-  /// @param by_q, by_qdot    gradients by coordinates and rates                       [dof]
-  /// @param p, grad_p        values of, and gradient by, the set's parameters         [set.size()]
-  void pull_back(const Mechanism<S>& mechanism, const ParameterSet& set, const VectorView<S>& p,
-                 const Motion<S>& motion, const VectorView<S>& y, Eigen::Ref<VectorX<S>> by_q,
-                 Eigen::Ref<VectorX<S>> by_qdot, Eigen::Ref<VectorX<S>> grad_p);
+  /// @param motion  poses and twists                                             (a is not read)
+  void linearize(const Mechanism<S>& mechanism, const Motion<S>& motion);
+
+  /// @param out  a sensor's readings, force                                 [3 x its points]
+  void read(int sensor, Eigen::Ref<VectorX<S>> out) const;
+
+  /// Transposed derivative: weights on a sensor's readings are added as covectors on bodies, and as
+  /// gradient by the parameters that bend contact at fixed motion.
+  ///
+  /// @param y       weights                                                 [3 x its points]
+  /// @param grad_p  gradient by the set's parameters                             [set.size()]
+  void pull_back(int sensor, const VectorView<S>& y, const Applied<S>& applied,
+                 LinkPullback<S>& links, Eigen::Ref<VectorX<S>> grad_p) const;
 
  private:
   /// A sensor against one body, as the contact whose law it reads.
   struct Side {
     int sensor = 0;
-    int first = 0;  // of the sensor's readings
     Contact contact;
+    PairMotion<S> motion;  // at the last linearize
+  };
+  /// A point of a sensor that touches.
+  struct Touch {
+    std::size_t side = 0;
+    TouchingPoint<S> point;  // whose index is that in the sensor
   };
 
-  template <typename Visit>
-  void for_each_touch(const Mechanism<S>& mechanism, const Motion<S>& motion,
-                      const Visit& visit) const;
-  Matrix3<S> world_axes(const PairMotion<S>& pair, int sensor, int point) const;
-  void add_point(const Side& side, const PairMotion<S>& pair, const TouchingPoint<S>& point,
-                 const Vector3<S>& weight);
+  Matrix3<S> world_axes(const Side& side, int point) const;
+  void add_parameters(const Side& side, const TouchingPoint<S>& point, const Vector3<S>& weight,
+                      const Applied<S>& applied, Eigen::Ref<VectorX<S>>& grad_p) const;
 
   const Model& model_;
   std::vector<Side> sides_;
-  LinkPullback<S> links_;
+  std::vector<Touch> touches_;
 };
 
 }  // namespace hbar

@@ -11,6 +11,7 @@
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/contact/contact_forces.h"
+#include "hbar/core/parameters/parameter_kinds.h"
 
 namespace hbar {
 namespace {
@@ -63,10 +64,10 @@ double probe_size(const Model& model, const Parameter& parameter) {
 std::vector<InputClass> input_classes(const Problem& problem) {
   const ParameterSet& set = problem.horizon.parameters();
   std::vector<InputClass> classes;
-  for (const ParameterKind kind : parameter_kinds()) {
-    InputClass next{std::string(kind_name(kind)), {}, {}};
+  for (const ParameterKindRow& kind : parameter_kinds()) {
+    InputClass next{std::string(kind.name), {}, {}};
     for (int i = 0; i < set.size(); ++i) {
-      if (set[i].kind == kind) {
+      if (set[i].kind == kind.kind) {
         next.entries.push_back(i);
         next.scales.push_back(probe_size(problem.horizon.model(), set[i]));
       }
@@ -140,7 +141,7 @@ class PieceReader {
       piece.insert(piece.end(), {change.stage, change.node});
     }
     if (model.contact_count() > 0) {
-      const int first = values.measured.rows() > 0 ? 0 : 1;  // measured at the start, too
+      const int first = values.declared_count() > 0 ? 0 : 1;  // measured at the start, too
       for (int stage = first; stage < trajectory.timeline.stage_count(); ++stage) {
         read_contacts(trajectory, stage, piece);
       }
@@ -184,11 +185,11 @@ class PieceReader {
 
   /// Which points of sensors touch and, of these, which slide: their shear is at its bound.
   void read_sensors(const TrajectoryValues& values, std::vector<int>& piece) const {
-    for (Eigen::Index k = 0; k < values.tactile.cols(); ++k) {
+    for (Eigen::Index k = 0; k < values.tactile().cols(); ++k) {
       Eigen::Index at = 0;
       for (const TactileSensor& sensor : horizon_.model().tactile_sensors()) {
         for (Eigen::Index i = 0; i < sensor.points.cols(); ++i, at += 3) {
-          const Eigen::Vector3d reading = values.tactile.col(k).segment<3>(at);
+          const Eigen::Vector3d reading = values.tactile().col(k).segment<3>(at);
           const double bound = sensor.coefficients.mu * std::abs(reading[2]);
           const bool slides = reading.head<2>().norm() > (1.0 - 1e-9) * bound;
           piece.push_back(reading[2] == 0.0 ? 0 : slides ? 1 : 2);

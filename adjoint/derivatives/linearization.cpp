@@ -5,6 +5,7 @@
 #include "hbar/adjoint/trajectory/history.h"
 #include "hbar/adjoint/trajectory/horizon.h"
 #include "hbar/core/model/drives.h"
+#include "hbar/core/parameters/parameter_kinds.h"
 
 namespace hbar {
 namespace {
@@ -176,7 +177,8 @@ void Linearizer::Workspace::fill_qdot0(
 
 void Linearizer::Workspace::fill_parameters(const Trajectory& trajectory, int s) {
   const ParameterSet& set = horizon.parameters();
-  parameter_columns<double>(*trajectory.mechanism, set, trajectory.inputs.p, stage, point, columns);
+  parameter_columns<double>({*trajectory.mechanism, set, trajectory.inputs.p}, stage, point,
+                            columns);
   for (std::size_t b = 0; b < set.blocks().size(); ++b) {
     const ParameterBlock& owner = set.blocks()[b];
     const auto count = static_cast<int>(rows_of_block[b].size());

@@ -2,13 +2,11 @@
 
 #include <utility>
 
-#include "hbar/adjoint/outputs/instant_outputs.h"
-#include "hbar/adjoint/stage/parameter_derivatives.h"
+#include "hbar/adjoint/derivatives/backward_sweep.h"
 #include "hbar/adjoint/trajectory/history.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/dual_vectors.h"
 #include "hbar/core/base/error.h"
-#include "hbar/core/model/drives.h"
 
 namespace hbar {
 namespace {
@@ -40,6 +38,7 @@ struct SecondOrderSweep::Workspace {
   explicit Workspace(const Horizon& h)
       : horizon(h),
         adjoint(h),
+        sweep(h),
         stage(h.model()),
         point(h.model()),
         block(h.model().dof(), h.model().dof()),
@@ -48,24 +47,23 @@ struct SecondOrderSweep::Workspace {
         mechanism_d(nominal_mechanism<Dual>(h.model())),
         stage_d(h.model()),
         point_d(h.model()),
-        outputs(h.model(), h.options().measurements),
-        rows(outputs.zero_rows()),
+        measurements(h.model(), h.measurements()),
+        instants(h.model(), measurements.reads_contacts()),
         g_d(h.model().dof()),
         qdot_past(h.model().dof()),
         a_past(h.model().dof()),
-        y_start{VectorX<Dual>(h.model().dof()), VectorX<Dual>(h.model().dof())},
         delta(h.model().dof()) {}
 
   [[nodiscard]] const Trajectory& trajectory() const { return *trajectory_; }
+  [[nodiscard]] Applied<Dual> applied() const { return {mechanism_d, horizon.parameters(), p_d}; }
   void factorize();
   void set_stage(int s);
   void read_values(int k);
-  void add_outputs(int k);
-  void solve_adjoint(int s);
-  void sweep_stage(int s);
+  void solve_adjoint(int s, const VectorX<Dual>& y, StageResidual<Dual>& at, VectorX<Dual>& z);
 
   Horizon horizon;
   AdjointSweep adjoint;
+  BackwardSweep<Dual> sweep;
   const Trajectory* trajectory_ = nullptr;
   TrajectoryPartials weights{TrajectoryValues{}};
   Gradient gradient;
@@ -79,16 +77,13 @@ struct SecondOrderSweep::Workspace {
   Mechanism<Dual> mechanism_d;
   StageResidual<Dual> stage_d;
   StagePoint<Dual> point_d;
-  InstantOutputs<Dual> outputs;
-  OutputRows<Dual> rows;
-  VectorX<Dual> p_d;
+  Measurements<Dual> measurements;
+  InstantMotion<Dual> instants;
+  VectorX<Dual> p_d, measured;
   MatrixX<Dual> u_d, q_d, qdot_d;  // per step; per stage
-  VectorX<Dual> g_d, qdot_past, a_past, y, z, y_qdot, y_a;
-  StepStart<Dual> y_start;
+  VectorX<Dual> g_d, qdot_past, a_past;
   Eigen::VectorXd delta;
   ValueTangent tangent;
-  MatrixX<Dual> v_weights, tactile_weights, measured_weights, q_bar, qdot_bar, u_bar;
-  VectorX<Dual> p_bar;
   Gradient out;
 };
 
@@ -119,64 +114,28 @@ void SecondOrderSweep::Workspace::read_values(int k) {
   const int s = trajectory().timeline.step_end(k);
   tangent.q.col(k) = slopes_of(q_d.col(s));
   tangent.qdot.col(k) = slopes_of(qdot_d.col(s));
-  if (outputs.empty()) {
-    return;
+  if (!measurements.empty()) {
+    const Applied<Dual> parameters = applied();
+    const Instant<Dual> at =
+        instants.at(parameters, q_d.col(s), qdot_d.col(s), u_d.col(measured_step(k)));
+    measurements.linearize(at);
+    measurements.read(at, measured);
+    tangent.measured.col(k) = slopes_of(measured);
   }
-  outputs.read(mechanism_d, outputs.motion_at(mechanism_d, q_d.col(s), qdot_d.col(s)), q_d.col(s),
-               qdot_d.col(s), u_d.col(measured_step(k)), rows);
-  tangent.v.col(k) = slopes_of(rows.v);
-  tangent.tactile.col(k) = slopes_of(rows.tactile);
-  tangent.measured.col(k) = slopes_of(rows.measured);
-}
-
-/// Brings the outputs' weights at step k to what they depend on.
-void SecondOrderSweep::Workspace::add_outputs(int k) {
-  if (outputs.empty()) {
-    return;
-  }
-  const int s = trajectory().timeline.step_end(k);
-  const int step = measured_step(k);
-  rows = {v_weights.col(k), tactile_weights.col(k), measured_weights.col(k)};
-  outputs.pull_back(mechanism_d, horizon.parameters(), p_d,
-                    outputs.motion_at(mechanism_d, q_d.col(s), qdot_d.col(s)), q_d.col(s),
-                    qdot_d.col(s), u_d.col(step), rows, q_bar.col(s), qdot_bar.col(s),
-                    u_bar.col(step), p_bar);
 }
 
 /// δz of H_ssᵀ δz = δy − (δH_ss)ᵀ z.
-void SecondOrderSweep::Workspace::solve_adjoint(int s) {
-  const double rate = point_d.rate;
-  stage_d.pull_back(z);
+void SecondOrderSweep::Workspace::solve_adjoint(int s, const VectorX<Dual>& y,
+                                                StageResidual<Dual>& at, VectorX<Dual>& z) {
+  const double rate = at.rate();
+  z = adjoint.adjoint().col(s - 1).cast<Dual>();
+  at.pull_back(z);
   for (Eigen::Index i = 0; i < delta.size(); ++i) {
-    delta[i] =
-        (y[i] - stage_d.by_q()[i] - rate * stage_d.by_qdot()[i] - (rate * rate) * stage_d.by_a()[i])
-            .slope;
+    delta[i] = (y[i] - at.by_q()[i] - rate * at.by_qdot()[i] - (rate * rate) * at.by_a()[i]).slope;
   }
   delta = factors[static_cast<std::size_t>(s)].transpose().solve(delta).eval();
   set_slope(z, delta);
-  stage_d.pull_back(z);
-}
-
-void SecondOrderSweep::Workspace::sweep_stage(int s) {
-  set_stage(s);
-  stage_d.linearize(mechanism_d, point_d, g_d);
-  const double rate = point_d.rate;
-  y = q_bar.col(s) + rate * qdot_bar.col(s);
-  z = adjoint.adjoint().col(s - 1).cast<Dual>();
-  solve_adjoint(s);
-  const JointForces<Dual>& forces = stage_d.joint_forces();
-  const double c = point_d.c();
-  y_a = -stage_d.by_a();
-  y_qdot = qdot_bar.col(s) - stage_d.by_qdot() + rate * y_a;
-  y_start.q = c * z.cwiseProduct(forces.by_start_q);
-  y_start.qdot = c * z.cwiseProduct(forces.by_start_qdot);
-  history.scatter<Dual>(trajectory(), q_d, qdot_d, s, y_qdot, y_a, y_start, q_bar, qdot_bar);
-  const int step = trajectory().timeline.stage(s).step;
-  for_each_drive(horizon.model(), [&](int k, int control) {
-    u_bar(control, step) += c * z[k] * forces.by_u[control];
-  });
-  add_parameter_gradient<Dual>(mechanism_d, horizon.parameters(), p_d, stage_d, point_d, z, -1.0,
-                               p_bar);
+  at.pull_back(z);
 }
 
 SecondOrderSweep::SecondOrderSweep(const Horizon& horizon)
@@ -219,12 +178,11 @@ const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
     w.qdot_d.col(s) = w.point_d.qdot;
   }
   const int steps = trajectory.step_count();
-  const Model& model = w.horizon.model();
-  w.tangent.q.resize(model.dof(), steps + 1);
-  w.tangent.qdot.resize(model.dof(), steps + 1);
-  w.tangent.v.resize(model.variable_count(), steps + 1);
-  w.tangent.tactile.resize(model.tactile_count(), steps + 1);
-  w.tangent.measured.resize(w.horizon.measured_count(), steps + 1);
+  w.tangent.q.resize(w.q_d.rows(), steps + 1);
+  w.tangent.qdot.resize(w.q_d.rows(), steps + 1);
+  w.tangent.measured.resize(w.measurements.size(), steps + 1);
+  w.tangent.measured_rows = w.horizon.measured_rows();
+  w.measured.resize(w.measurements.size());
   w.tangent.u = direction.u;
   w.tangent.p = direction.p;
   for (int k = 0; k <= steps; ++k) {
@@ -235,36 +193,21 @@ const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
 
 const Gradient& SecondOrderSweep::product(const TrajectoryPartials* weights_tangent) {
   Workspace& w = *work_;
-  const Trajectory& trajectory = w.trajectory();
   const TrajectoryPartials& y = w.weights;
   const TrajectoryPartials still(w.tangent);
   const TrajectoryPartials& dy = weights_tangent != nullptr ? *weights_tangent : still;
-  const Timeline& timeline = trajectory.timeline;
-  w.q_bar.setZero(trajectory.q.rows(), timeline.stage_count());
-  w.qdot_bar.setZero(trajectory.q.rows(), timeline.stage_count());
-  for (int k = 0; k <= timeline.step_count(); ++k) {
-    const int s = timeline.step_end(k);
-    w.q_bar.col(s) += dual_vector(y.q.col(k), dy.q.col(k));
-    w.qdot_bar.col(s) += dual_vector(y.qdot.col(k), dy.qdot.col(k));
-  }
-  w.v_weights = dual_matrix(y.v, dy.v);
-  w.tactile_weights = dual_matrix(y.tactile, dy.tactile);
-  w.measured_weights = dual_matrix(y.measured, dy.measured);
-  w.u_bar = dual_matrix(y.u, dy.u);
-  w.p_bar = dual_vector(y.p, dy.p);
-  int k = timeline.step_count();
-  for (int s = timeline.last_stage(); s > 0; --s) {
-    if (s == timeline.step_end(k)) {
-      w.add_outputs(k);
-      --k;
-    }
-    w.sweep_stage(s);
-  }
-  w.add_outputs(0);
-  w.out.p = slopes_of(w.p_bar);
-  w.out.u = slopes_of(w.u_bar);
-  w.out.q0 = slopes_of(w.q_bar.col(0));
-  w.out.qdot0 = slopes_of(w.qdot_bar.col(0));
+  const Applied<Dual> applied = w.applied();
+  w.sweep.run(
+      {w.trajectory(), applied, w.q_d, w.qdot_d, w.u_d},
+      {dual_matrix(y.q, dy.q), dual_matrix(y.qdot, dy.qdot), dual_matrix(y.measured, dy.measured),
+       dual_matrix(y.u, dy.u), dual_vector(y.p, dy.p)},
+      [&](int s, const VectorX<Dual>& of, StageResidual<Dual>& at, VectorX<Dual>& z) {
+        w.solve_adjoint(s, of, at, z);
+      });
+  w.out.p = slopes_of(w.sweep.by_p());
+  w.out.u = slopes_of(w.sweep.by_u());
+  w.out.q0 = slopes_of(w.sweep.by_q0());
+  w.out.qdot0 = slopes_of(w.sweep.by_qdot0());
   return w.out;
 }
 

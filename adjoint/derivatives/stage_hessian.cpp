@@ -14,7 +14,8 @@ VectorX<Dual> without_slope(const Eigen::VectorXd& values) { return values.cast<
 StageHessian::StageHessian(const Horizon& horizon, Eigen::Index designs)
     : horizon_(horizon),
       stage_(horizon.model()),
-      outputs_(horizon.model(), horizon.options().measurements),
+      measurements_(horizon.model(), horizon.measurements()),
+      instants_(horizon.model(), measurements_.reads_contacts()),
       history_(horizon.model()),
       at_(horizon.model()),
       point_(horizon.model()),
@@ -24,18 +25,17 @@ StageHessian::StageHessian(const Horizon& horizon, Eigen::Index designs)
       g_(horizon.model().dof()) {
   const Eigen::Index n = horizon.model().dof();
   const Eigen::Index controls = horizon.model().control_count();
-  for (Eigen::MatrixXd* square : {&qq, &qv, &qa, &vv}) {
+  for (Eigen::MatrixXd* square : {&out_.qq, &out_.qv, &out_.qa, &out_.vv}) {
     square->setZero(n, n);
   }
-  uq.setZero(controls, n);
-  uv.setZero(controls, n);
-  for (Eigen::MatrixXd* wide : {&dq, &dv, &da, &dsq, &dsv}) {
+  out_.uq.setZero(controls, n);
+  out_.uv.setZero(controls, n);
+  for (Eigen::MatrixXd* wide : {&out_.dq, &out_.dv, &out_.da, &out_.dsq, &out_.dsv}) {
     wide->setZero(designs, n);
   }
-  du.setZero(designs, controls);
-  dd.setZero(designs, designs);
-  by_p.setZero(horizon.parameters().size());
-  y_ = outputs_.zero_rows();
+  out_.du.setZero(designs, controls);
+  out_.dd.setZero(designs, designs);
+  out_.by_p.setZero(horizon.parameters().size());
 }
 
 void StageHessian::set_parameters(const Eigen::VectorXd& p, const Eigen::MatrixXd& map_jacobian) {
@@ -53,10 +53,11 @@ void StageHessian::set_parameters(const Eigen::VectorXd& p, const Eigen::MatrixX
 
 void StageHessian::set_zero() {
   for (Eigen::MatrixXd* part :
-       {&qq, &qv, &qa, &vv, &uq, &uv, &dq, &dv, &da, &dsq, &dsv, &du, &dd}) {
+       {&out_.qq, &out_.qv, &out_.qa, &out_.vv, &out_.uq, &out_.uv, &out_.dq, &out_.dv, &out_.da,
+        &out_.dsq, &out_.dsv, &out_.du, &out_.dd}) {
     part->setZero();
   }
-  by_p.setZero();
+  out_.by_p.setZero();
 }
 
 /// by_q_ and by_qdot_ of zᵀ g at the point as it is.
@@ -70,9 +71,11 @@ void StageHessian::linearize_stage(const Mechanism<Dual>& mechanism) {
 /// Adds the outputs' gradients to by_q_, by_qdot_, by_u_ and by_p_.
 void StageHessian::linearize_outputs(const Mechanism<Dual>& mechanism, const VectorX<Dual>& p) {
   if (has_outputs_) {
-    outputs_.pull_back(mechanism, horizon_.parameters(), p,
-                       outputs_.motion_at(mechanism, point_.q, point_.qdot), point_.q, point_.qdot,
-                       point_.u, y_, by_q_, by_qdot_, by_u_, by_p_);
+    const Applied<Dual> applied{mechanism, horizon_.parameters(), p};
+    const Instant<Dual> at = instants_.at(applied, point_.q, point_.qdot, point_.u);
+    InstantGradient<Dual> by{by_q_, by_qdot_, by_u_, by_p_};
+    measurements_.linearize(at);
+    measurements_.pull_back(at, y_, by);
   }
 }
 
@@ -82,13 +85,13 @@ void StageHessian::evaluate_design(Eigen::Index i, bool with_stage) {
   by_p_.setZero();
   if (with_stage) {
     linearize_stage(moving_[k]);
-    add_parameter_gradient<Dual>(moving_[k], horizon_.parameters(), moving_p_[k], stage_, point_,
+    add_parameter_gradient<Dual>({moving_[k], horizon_.parameters(), moving_p_[k]}, stage_, point_,
                                  z_, 1.0, by_p_);
     const JointForces<Dual>& forces = stage_.joint_forces();
     const double c = point_.c();
-    da.row(i) = slopes_of(stage_.by_a());
-    dsq.row(i) = -c * slopes_of(z_.cwiseProduct(forces.by_start_q));
-    dsv.row(i) = -c * slopes_of(z_.cwiseProduct(forces.by_start_qdot));
+    out_.da.row(i) = slopes_of(stage_.by_a());
+    out_.dsq.row(i) = -c * slopes_of(z_.cwiseProduct(forces.by_start_q));
+    out_.dsv.row(i) = -c * slopes_of(z_.cwiseProduct(forces.by_start_qdot));
     for_each_drive(horizon_.model(), [&](int at, int control) {
       by_u_[control] -= c * z_[at] * forces.by_u[control];
     });
@@ -97,17 +100,17 @@ void StageHessian::evaluate_design(Eigen::Index i, bool with_stage) {
     by_qdot_.setZero();
   }
   linearize_outputs(moving_[k], moving_p_[k]);
-  dq.row(i) = slopes_of(by_q_);
-  dv.row(i) = slopes_of(by_qdot_);
-  du.row(i) = slopes_of(by_u_);
-  dd.row(i) = map_jacobian_.transpose() * slopes_of(by_p_).matrix();
+  out_.dq.row(i) = slopes_of(by_q_);
+  out_.dv.row(i) = slopes_of(by_qdot_);
+  out_.du.row(i) = slopes_of(by_u_);
+  out_.dd.row(i) = map_jacobian_.transpose() * slopes_of(by_p_).matrix();
   if (i == 0) {
-    by_p = by_p_.unaryExpr([](const Dual& x) { return x.value; });
+    out_.by_p = by_p_.unaryExpr([](const Dual& x) { return x.value; });
   }
 }
 
-void StageHessian::evaluate(const Trajectory& trajectory, int stage, const Eigen::VectorXd& z,
-                            const OutputRows<double>* y) {
+const StageCurvature& StageHessian::evaluate(const Trajectory& trajectory, int stage,
+                                             const Eigen::VectorXd& z, const Eigen::VectorXd* y) {
   set_zero();
   history_.set_point(trajectory, stage, at_);
   point_.q = without_slope(at_.q);
@@ -121,7 +124,7 @@ void StageHessian::evaluate(const Trajectory& trajectory, int stage, const Eigen
   by_u_.setZero(at_.u.size());
   has_outputs_ = y != nullptr;
   if (has_outputs_) {
-    y_ = {without_slope(y->v), without_slope(y->tactile), without_slope(y->measured)};
+    y_ = without_slope(*y);
   }
   for (Eigen::Index i = 0; i < at_.q.size(); ++i) {
     point_.q[i].slope = 1.0;
@@ -129,24 +132,26 @@ void StageHessian::evaluate(const Trajectory& trajectory, int stage, const Eigen
     linearize_stage(still_);
     linearize_outputs(still_, still_p_);
     point_.q[i].slope = 0.0;
-    qq.row(i) = slopes_of(by_q_);
-    qv.row(i) = slopes_of(by_qdot_);
-    qa.row(i) = slopes_of(stage_.by_a());
-    uq.col(i) = slopes_of(by_u_);
+    out_.qq.row(i) = slopes_of(by_q_);
+    out_.qv.row(i) = slopes_of(by_qdot_);
+    out_.qa.row(i) = slopes_of(stage_.by_a());
+    out_.uq.col(i) = slopes_of(by_u_);
     point_.qdot[i].slope = 1.0;
     by_u_.setZero();
     linearize_stage(still_);
     linearize_outputs(still_, still_p_);
     point_.qdot[i].slope = 0.0;
-    vv.row(i) = slopes_of(by_qdot_);
-    uv.col(i) = slopes_of(by_u_);
+    out_.vv.row(i) = slopes_of(by_qdot_);
+    out_.uv.col(i) = slopes_of(by_u_);
   }
-  for (Eigen::Index i = 0; i < dq.rows(); ++i) {
+  for (Eigen::Index i = 0; i < out_.dq.rows(); ++i) {
     evaluate_design(i, true);
   }
+  return out_;
 }
 
-void StageHessian::evaluate_start(const Trajectory& trajectory, const OutputRows<double>& y) {
+const StageCurvature& StageHessian::evaluate_start(const Trajectory& trajectory,
+                                                   const Eigen::VectorXd& y) {
   set_zero();
   point_.q = without_slope(trajectory.q.col(0));
   point_.qdot = without_slope(trajectory.qdot.col(0));
@@ -156,7 +161,7 @@ void StageHessian::evaluate_start(const Trajectory& trajectory, const OutputRows
   by_q_.setZero(point_.q.size());
   by_qdot_.setZero(point_.q.size());
   has_outputs_ = true;
-  y_ = {without_slope(y.v), without_slope(y.tactile), without_slope(y.measured)};
+  y_ = without_slope(y);
   const auto along = [&](Dual& moved, Eigen::Index i, Eigen::MatrixXd& by_u) {
     by_q_.setZero();
     by_qdot_.setZero();
@@ -167,15 +172,16 @@ void StageHessian::evaluate_start(const Trajectory& trajectory, const OutputRows
     by_u.col(i) = slopes_of(by_u_);
   };
   for (Eigen::Index i = 0; i < point_.q.size(); ++i) {
-    along(point_.q[i], i, uq);
-    qq.row(i) = slopes_of(by_q_);
-    qv.row(i) = slopes_of(by_qdot_);
-    along(point_.qdot[i], i, uv);
-    vv.row(i) = slopes_of(by_qdot_);
+    along(point_.q[i], i, out_.uq);
+    out_.qq.row(i) = slopes_of(by_q_);
+    out_.qv.row(i) = slopes_of(by_qdot_);
+    along(point_.qdot[i], i, out_.uv);
+    out_.vv.row(i) = slopes_of(by_qdot_);
   }
-  for (Eigen::Index i = 0; i < dq.rows(); ++i) {
+  for (Eigen::Index i = 0; i < out_.dq.rows(); ++i) {
     evaluate_design(i, false);
   }
+  return out_;
 }
 
 }  // namespace hbar

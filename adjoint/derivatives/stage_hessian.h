@@ -2,13 +2,24 @@
 
 #include <vector>
 
-#include "hbar/adjoint/outputs/instant_outputs.h"
+#include "hbar/adjoint/outputs/measurements.h"
 #include "hbar/adjoint/trajectory/history.h"
 #include "hbar/adjoint/trajectory/horizon.h"
 
 namespace hbar {
 
-/// Second derivatives of  z·g(q, q̇, a, start, u, p) + y·outputs(q, q̇, u, p)  at one stage,
+/// Second derivatives at one stage. Letters name by what: coordinates q, rates v, accelerations a,
+/// controls u, design variables d, and sq, sv those of the step's start.
+struct StageCurvature {
+  Eigen::MatrixXd qq, qv, qa, vv;        ///< by q, q̇ and a                    [dof x dof]
+  Eigen::MatrixXd uq, uv;                ///< of what is measured              [controls x dof]
+  Eigen::MatrixXd dq, dv, da, dsq, dsv;  ///< by d and q, q̇, a, start          [designs x dof]
+  Eigen::MatrixXd du;                    ///<                                  [designs x controls]
+  Eigen::MatrixXd dd;                    ///<                                  [designs x designs]
+  Eigen::VectorXd by_p;  ///< first derivative by p, if there are designs        [parameters]
+};
+
+/// Second derivatives of  z·g(q, q̇, a, start, u, p) + y·measured(q, q̇, u, p)  at one stage,
 /// contracted with z and y before anything is stored: a dual number runs through the transposed
 /// derivative once per coordinate, rate and design variable. By a, start and u there is no second
 /// derivative but the mixed ones that are listed.
@@ -28,19 +39,12 @@ class StageHessian {
   /// Evaluates at a stage of a trajectory that has the parameters.
   ///
   /// @param z  weights on g                                                      [dof]
-  /// @param y  weights on the outputs that are read at the stage's end; null: none are
-  void evaluate(const Trajectory& trajectory, int stage, const Eigen::VectorXd& z,
-                const OutputRows<double>* y);
+  /// @param y  weights on what is measured at the stage's end; null: nothing is     [measured]
+  /// @returns  valid until the next evaluation
+  const StageCurvature& evaluate(const Trajectory& trajectory, int stage, const Eigen::VectorXd& z,
+                                 const Eigen::VectorXd* y);
   /// The same of the initial state, where there are outputs alone.
-  void evaluate_start(const Trajectory& trajectory, const OutputRows<double>& y);
-
-  // Results of the last evaluation.
-  Eigen::MatrixXd qq, qv, qa, vv;        ///< by q, q̇ and a                    [dof x dof]
-  Eigen::MatrixXd uq, uv;                ///< of outputs                       [controls x dof]
-  Eigen::MatrixXd dq, dv, da, dsq, dsv;  ///< by d and q, q̇, a, start          [designs x dof]
-  Eigen::MatrixXd du;                    ///<                                  [designs x controls]
-  Eigen::MatrixXd dd;                    ///<                                  [designs x designs]
-  Eigen::VectorXd by_p;  ///< first derivative by p, if there are designs        [parameters]
+  const StageCurvature& evaluate_start(const Trajectory& trajectory, const Eigen::VectorXd& y);
 
  private:
   void set_zero();
@@ -50,7 +54,8 @@ class StageHessian {
 
   Horizon horizon_;
   StageResidual<Dual> stage_;
-  InstantOutputs<Dual> outputs_;
+  Measurements<Dual> measurements_;
+  InstantMotion<Dual> instants_;
   History history_;
   StagePoint<double> at_;
   StagePoint<Dual> point_;
@@ -59,8 +64,9 @@ class StageHessian {
   std::vector<VectorX<Dual>> moving_p_;
   VectorX<Dual> still_p_;
   Eigen::MatrixXd map_jacobian_;
+  StageCurvature out_;
   VectorX<Dual> z_;
-  OutputRows<Dual> y_;
+  VectorX<Dual> y_;
   bool has_outputs_ = false;
   VectorX<Dual> g_, by_q_, by_qdot_, by_u_, by_p_;
 };

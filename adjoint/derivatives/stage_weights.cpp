@@ -1,6 +1,6 @@
 #include "hbar/adjoint/derivatives/stage_weights.h"
 
-#include "hbar/adjoint/outputs/instant_outputs.h"
+#include "hbar/adjoint/outputs/measurements.h"
 #include "hbar/adjoint/trajectory/flat_stencil.h"
 #include "hbar/adjoint/trajectory/horizon.h"
 
@@ -30,22 +30,21 @@ StageWeights stage_weights(const Horizon& horizon, const Trajectory& trajectory,
   const Model& model = horizon.model();
   StageWeights out{Eigen::MatrixXd::Zero(model.dof(), trajectory.timeline.stage_count()),
                    Eigen::VectorXd::Zero(model.dof()), partials.p, partials.u};
-  const Mechanism<double>& mechanism = *trajectory.mechanism;
-  InstantOutputs<double> outputs(model, horizon.options().measurements);
+  const Applied<double> applied{*trajectory.mechanism, horizon.parameters(), trajectory.inputs.p};
+  Measurements<double> measurements(model, horizon.measurements());
+  InstantMotion<double> instants(model, measurements.reads_contacts());
   Eigen::VectorXd by_rate(model.dof());
   for (int k = 0; k <= trajectory.step_count(); ++k) {
     const int s = trajectory.timeline.step_end(k);
     out.q_bar.col(s) += partials.q.col(k);
     by_rate = partials.qdot.col(k);
-    if (!outputs.empty()) {
-      const auto q = trajectory.q.col(s);
-      const auto qdot = trajectory.qdot.col(s);
+    if (!measurements.empty()) {
       const int step = measured_step(k);
-      outputs.pull_back(mechanism, horizon.parameters(), trajectory.inputs.p,
-                        outputs.motion_at(mechanism, q, qdot), q, qdot,
-                        trajectory.inputs.u.col(step),
-                        {partials.v.col(k), partials.tactile.col(k), partials.measured.col(k)},
-                        out.q_bar.col(s), by_rate, out.u.col(step), out.p);
+      const Instant<double> at = instants.at(applied, trajectory.q.col(s), trajectory.qdot.col(s),
+                                             trajectory.inputs.u.col(step));
+      InstantGradient<double> by{out.q_bar.col(s), by_rate, out.u.col(step), out.p};
+      measurements.linearize(at);
+      measurements.pull_back(at, partials.measured.col(k), by);
     }
     add_rate_weights(model, trajectory, s, by_rate, out);
   }

@@ -8,7 +8,7 @@ class Horizon;
 class Model;
 struct Trajectory;
 
-/// ∂Ψ/∂q̄ with rates, variables, sensor readings and measurements replaced by what they depend on: ȳ
+/// ∂Ψ/∂q̄ with rates and measurements replaced by what they depend on: ȳ
 /// of (20), and the direct shares of q̇₀, p and u.
 struct StageWeights {
   Eigen::MatrixXd q_bar;  ///< per stage, column 0 is q₀      [dof x stages]

@@ -21,8 +21,6 @@ struct Directions {
 struct Tangents {
   Eigen::MatrixXd q;         ///< rows k·dof … are step k's               [dof·(N+1) x count]
   Eigen::MatrixXd qdot;      ///<                                         [dof·(N+1) x count]
-  Eigen::MatrixXd v;         ///< auxiliary variables                     [variables·(N+1) x count]
-  Eigen::MatrixXd tactile;   ///< sensor readings                     [readings·(N+1) x count]
   Eigen::MatrixXd measured;  ///< measurements                        [measured·(N+1) x count]
 };
 

@@ -1,14 +1,21 @@
 #include "hbar/adjoint/outputs/measurements.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "hbar/contact/contact_parameters.h"
-#include "hbar/core/base/error.h"
 #include "hbar/core/base/rotation.h"
 #include "hbar/core/dynamics/joint_forces.h"
+#include "hbar/core/model/drives.h"
+#include "hbar/core/parameters/parameter_kinds.h"
 
 namespace hbar {
 namespace {
+
+template <Scalar S>
+BodyMotion<S> body_at(const Model& model, const Instant<S>& at, int link) {
+  return body_motion<S>(model, at.applied.mechanism, at.motion, link);
+}
 
 /// Velocity of a body's material at x.
 template <Scalar S>
@@ -30,85 +37,78 @@ Matrix3<S> orientation_error(const Orientation& m, const BodyMotion<S>& body) {
   return m.R_0T.transpose().cast<S>() * body.X_WB.R;
 }
 
+/// Where an end effector is.
+template <Scalar S>
+Vector3<S> position_of(const Model& model, const Instant<S>& at, const EndEffectorPosition& m) {
+  const EndEffector& point = model.end_effectors()[static_cast<std::size_t>(m.end_effector)];
+  const NodeMotion<S>& node = at.motion.at(model.node_of_link(point.link));
+  return node.p + node.R * point.position.cast<S>();
+}
+
 /// Visits what a motor drives: visit(coordinate, control, MotorForce at the present state).
 template <Scalar S, typename Visit>
-void for_each_motor_force(const Model& model, const Mechanism<S>& mechanism, int motor,
-                          const VectorView<S>& q, const VectorView<S>& qdot, const VectorView<S>& u,
-                          const Visit& visit) {
-  const CoordinateRange range =
-      model.coordinates_of_link(model.motors()[static_cast<std::size_t>(motor)].link);
-  for (int c = range.begin; c < range.end; ++c) {
-    const int i = model.first_control(motor) + c - range.begin;
-    visit(c, i, motor_force<S>(model, mechanism, motor, u[i], q[c], qdot[c]));
+void for_each_motor_force(const Model& model, const Instant<S>& at, int motor, const Visit& visit) {
+  for_each_drive(model, motor, [&](int c, int i) {
+    visit(c, i, motor_force<S>(model, at.applied.mechanism, motor, at.u[i], at.q[c], at.qdot[c]));
+  });
+}
+
+template <Scalar S>
+void add_parameter(const Instant<S>& at, ParameterKind kind, int owner, int component,
+                   const S& gradient, InstantGradient<S>& out) {
+  const int i = at.applied.set.index(kind, owner, component);
+  if (i >= 0) {
+    out.p[i] += gradient;
   }
+}
+
+/// A motor's force on coordinate c, of control i, with a weight on it.
+template <Scalar S>
+void add_force(const Instant<S>& at, int motor, int c, int i, const MotorForce<S>& force,
+               const S& weight, InstantGradient<S>& out) {
+  out.q[c] += weight * force.by_q;
+  out.qdot[c] += weight * force.by_qdot;
+  out.u[i] += weight * force.by_u;
+  add_parameter<S>(at, ParameterKind::kMotorP, motor, 0, weight * force.by_P, out);
+  add_parameter<S>(at, ParameterKind::kMotorD, motor, 0, weight * force.by_D, out);
+}
+
+/// Whether weights have any effect: dual ones count that only move.
+template <Scalar S, typename Weights>
+bool counts(const Weights& weights) {
+  return std::any_of(weights.begin(), weights.end(), [](const S& weight) {
+    if constexpr (std::same_as<S, Dual>) {
+      return weight.value != 0.0 || weight.slope != 0.0;
+    } else {
+      return weight != 0.0;
+    }
+  });
 }
 
 }  // namespace
 
-/// What rows are read from.
-template <Scalar S>
-struct Measurements<S>::Instant {
-  const Mechanism<S>& mechanism;
-  const Motion<S>& motion;
-  const VectorView<S>& q;
-  const VectorView<S>& qdot;
-  const VectorView<S>& u;
-
-  [[nodiscard]] BodyMotion<S> body(const Model& model, int link) const {
-    return body_motion<S>(model, mechanism, motion, link);
-  }
-};
-
-/// Where weights go.
-template <Scalar S>
-struct Measurements<S>::Gradients {
-  const ParameterSet& set;
-  const VectorView<S>& values;  ///< p
-  Eigen::Ref<VectorX<S>>& by_q;
-  Eigen::Ref<VectorX<S>>& by_qdot;
-  Eigen::Ref<VectorX<S>>& by_u;
-  Eigen::Ref<VectorX<S>>& by_p;
-
-  void add_parameter(ParameterKind kind, int owner, int component, const S& gradient) {
-    const int i = set.index(kind, owner, component);
-    if (i >= 0) {
-      by_p[i] += gradient;
-    }
-  }
-  /// A motor's force on coordinate c, of control i, with a weight on it.
-  void add_force(int motor, int c, int i, const MotorForce<S>& force, const S& weight) {
-    by_q[c] += weight * force.by_q;
-    by_qdot[c] += weight * force.by_qdot;
-    by_u[i] += weight * force.by_u;
-    add_parameter(ParameterKind::kMotorP, motor, 0, weight * force.by_P);
-    add_parameter(ParameterKind::kMotorD, motor, 0, weight * force.by_D);
-  }
-};
-
 template <Scalar S>
 Measurements<S>::Measurements(const Model& model, std::vector<Measurement> measurements)
-    : model_(model), measurements_(std::move(measurements)), links_(model) {
-  check_measurements(model, measurements_);
+    : model_(model), measurements_(std::move(measurements)), links_(model), tactile_(model) {
   for (const Measurement& measurement : measurements_) {
     first_.push_back(size());
     const std::vector<std::string> rows = row_names(model, measurement);
     names_.insert(names_.end(), rows.begin(), rows.end());
-    if (std::holds_alternative<ContactForce>(measurement) && !contacts_) {
-      contacts_.emplace(model);
-      contact_weights_.resize(model.contacts().size());
-    }
+    reads_contacts_ = reads_contacts_ || std::holds_alternative<ContactForce>(measurement);
   }
   first_.push_back(size());
+  contact_weights_.resize(reads_contacts_ ? model.contacts().size() : 0);
 }
 
 template <Scalar S>
-void Measurements<S>::readings(const Mechanism<S>& mechanism, const Motion<S>& motion,
-                               const VectorView<S>& q, const VectorView<S>& qdot,
-                               const VectorView<S>& u, Eigen::Ref<VectorX<S>> out) {
-  if (contacts_) {
-    contacts_->linearize(mechanism, motion);
+void Measurements<S>::linearize(const Instant<S>& at) {
+  if (!model_.tactile_sensors().empty()) {
+    tactile_.linearize(at.applied.mechanism, at.motion);
   }
-  const Instant at{mechanism, motion, q, qdot, u};
+}
+
+template <Scalar S>
+void Measurements<S>::read(const Instant<S>& at, Eigen::Ref<VectorX<S>> out) const {
   for (std::size_t i = 0; i < measurements_.size(); ++i) {
     std::visit(
         [&](const auto& m) { read(m, at, out.segment(first_[i], first_[i + 1] - first_[i])); },
@@ -117,31 +117,32 @@ void Measurements<S>::readings(const Mechanism<S>& mechanism, const Motion<S>& m
 }
 
 template <Scalar S>
-void Measurements<S>::pull_back(const Mechanism<S>& mechanism, const ParameterSet& set,
-                                const VectorView<S>& p, const Motion<S>& motion,
-                                const VectorView<S>& q, const VectorView<S>& qdot,
-                                const VectorView<S>& u, const VectorView<S>& y,
-                                Eigen::Ref<VectorX<S>> by_q, Eigen::Ref<VectorX<S>> by_qdot,
-                                Eigen::Ref<VectorX<S>> by_u, Eigen::Ref<VectorX<S>> grad_p) {
-  const Instant at{mechanism, motion, q, qdot, u};
-  Gradients out{set, p, by_q, by_qdot, by_u, grad_p};
+void Measurements<S>::pull_back(const Instant<S>& at, const VectorView<S>& y,
+                                InstantGradient<S>& out) {
   links_.clear();
   for (Eigen::Matrix<S, 4, 1>& weight : contact_weights_) {
     weight.setZero();
   }
+  bool any = false;
+  bool any_contact = false;
   for (std::size_t i = 0; i < measurements_.size(); ++i) {
-    std::visit(
-        [&](const auto& m) { weigh(m, at, y.segment(first_[i], first_[i + 1] - first_[i]), out); },
-        measurements_[i]);
+    const auto weights = y.segment(first_[i], first_[i + 1] - first_[i]);
+    if (counts<S>(weights)) {
+      any = true;
+      any_contact = any_contact || std::holds_alternative<ContactForce>(measurements_[i]);
+      std::visit([&](const auto& m) { weigh(m, at, weights, out); }, measurements_[i]);
+    }
   }
-  if (contacts_) {
-    contacts_->linearize(mechanism, motion);
+  if (!any) {
+    return;
+  }
+  if (any_contact) {
     weigh_contacts(at, out);
   }
   links_.sum();
-  links_.add_coordinates(motion, by_q);
-  links_.add_rates(motion, by_qdot);
-  links_.add_frames(mechanism, set, p, motion, grad_p);
+  links_.add_coordinates(at.motion, out.q);
+  links_.add_rates(at.motion, out.qdot);
+  links_.add_frames(at.applied, at.motion, out.p);
 }
 
 template <Scalar S>
@@ -155,48 +156,45 @@ void Measurements<S>::weigh_velocity(const BodyMotion<S>& body, int link, const 
 }
 
 template <Scalar S>
-void Measurements<S>::read(const PointVelocity& m, const Instant& at, Rows out) const {
-  const BodyMotion<S> body = at.body(model_, m.link);
+void Measurements<S>::read(const PointVelocity& m, At at, Rows out) const {
+  const BodyMotion<S> body = body_at<S>(model_, at, m.link);
   out = velocity_at<S>(body, body.X_WB.R * m.point.cast<S>() + body.X_WB.p);
 }
 
 template <Scalar S>
-void Measurements<S>::weigh(const PointVelocity& m, const Instant& at, const VectorView<S>& y,
-                            Gradients&) {
-  const BodyMotion<S> body = at.body(model_, m.link);
+void Measurements<S>::weigh(const PointVelocity& m, At at, Weights y, Out) {
+  const BodyMotion<S> body = body_at<S>(model_, at, m.link);
   weigh_velocity(body, m.link, body.X_WB.R * m.point.cast<S>() + body.X_WB.p, y);
 }
 
 template <Scalar S>
-void Measurements<S>::read(const Orientation& m, const Instant& at, Rows out) const {
-  out = log_rotation(orientation_error<S>(m, at.body(model_, m.link)));
+void Measurements<S>::read(const Orientation& m, At at, Rows out) const {
+  out = log_rotation(orientation_error<S>(m, body_at<S>(model_, at, m.link)));
 }
 
 template <Scalar S>
-void Measurements<S>::weigh(const Orientation& m, const Instant& at, const VectorView<S>& y,
-                            Gradients&) {
-  const Vector3<S> r = log_rotation(orientation_error<S>(m, at.body(model_, m.link)));
+void Measurements<S>::weigh(const Orientation& m, At at, Weights y, Out) {
+  const Vector3<S> r = log_rotation(orientation_error<S>(m, body_at<S>(model_, at, m.link)));
   // A turn by w of the body makes of exp([r]) exp([R_0Tᵀ w]) exp([r]): δr = J_r(r)⁻ᵀ R_0Tᵀ w.
   const Vector3<S> torque = m.R_0T.cast<S>() * (right_jacobian_inverse<S>(r) * y);
   links_.add_to_body(m.link, spatial<S>(torque, Vector3<S>::Zero()), Vector6<S>::Zero());
 }
 
 template <Scalar S>
-void Measurements<S>::read(const BodyDistance& m, const Instant& at, Rows out) const {
+void Measurements<S>::read(const BodyDistance& m, At at, Rows out) const {
   const RigidTransform<S> X_BA =
-      inverse(at.body(model_, m.other).X_WB) * at.body(model_, m.link).X_WB;
+      inverse(body_at<S>(model_, at, m.other).X_WB) * body_at<S>(model_, at, m.link).X_WB;
   const Vector3<S> x_B = X_BA.R * m.point.cast<S>() + X_BA.p;
-  out[0] = measured_surface<S>(model_, at.mechanism, m).sample(x_B).d - m.radius;
+  out[0] = measured_surface<S>(model_, at.applied.mechanism, m).sample(x_B).d - m.radius;
 }
 
 template <Scalar S>
-void Measurements<S>::weigh(const BodyDistance& m, const Instant& at, const VectorView<S>& y,
-                            Gradients& out) {
-  const RigidTransform<S> X_WA = at.body(model_, m.link).X_WB;
-  const RigidTransform<S> X_WB = at.body(model_, m.other).X_WB;
+void Measurements<S>::weigh(const BodyDistance& m, At at, Weights y, Out out) {
+  const RigidTransform<S> X_WA = body_at<S>(model_, at, m.link).X_WB;
+  const RigidTransform<S> X_WB = body_at<S>(model_, at, m.other).X_WB;
   const Vector3<S> x = X_WA.R * m.point.cast<S>() + X_WA.p;
   const Vector3<S> x_B = X_WB.R.transpose() * (x - X_WB.p);
-  const SurfaceDistance<S> surface = measured_surface<S>(model_, at.mechanism, m);
+  const SurfaceDistance<S> surface = measured_surface<S>(model_, at.applied.mechanism, m);
   const Vector3<S> force = y[0] * (X_WB.R * surface.sample(x_B).gradient);
   const Vector6<S> by_displacement = spatial<S>(x.cross(force), force);
   links_.add_to_body(m.link, by_displacement, Vector6<S>::Zero());
@@ -204,16 +202,16 @@ void Measurements<S>::weigh(const BodyDistance& m, const Instant& at, const Vect
     links_.add_to_body(m.other, -by_displacement, Vector6<S>::Zero());
   }
   for (int k = 0; k < surface.size_count(); ++k) {
-    out.add_parameter(ParameterKind::kSize, m.other, k, y[0] * surface.by_size(x_B, k).d);
+    add_parameter<S>(at, ParameterKind::kSize, m.other, k, y[0] * surface.by_size(x_B, k).d, out);
   }
 }
 
 template <Scalar S>
-void Measurements<S>::read(const ContactForce& m, const Instant&, Rows out) const {
+void Measurements<S>::read(const ContactForce& m, At at, Rows out) const {
   out.setZero();
-  for (const ActivePair<S>& pair : contacts_->active()) {
+  for (const ActivePair<S>& pair : at.contacts->active()) {
     if (pair.contact == m.contact) {
-      for (const TouchingPoint<S>& point : contacts_->points(pair)) {
+      for (const TouchingPoint<S>& point : at.contacts->points(pair)) {
         out[0] += point.force.normal;
         out.template tail<3>() += point.force.f;
       }
@@ -222,8 +220,7 @@ void Measurements<S>::read(const ContactForce& m, const Instant&, Rows out) cons
 }
 
 template <Scalar S>
-void Measurements<S>::weigh(const ContactForce& m, const Instant&, const VectorView<S>& y,
-                            Gradients&) {
+void Measurements<S>::weigh(const ContactForce& m, At, Weights y, Out) {
   contact_weights_[static_cast<std::size_t>(m.contact)] += y;
 }
 
@@ -254,15 +251,15 @@ void Measurements<S>::weigh_touch(const ActivePair<S>& pair, const TouchingPoint
 }
 
 template <Scalar S>
-void Measurements<S>::weigh_contacts(const Instant& at, Gradients& out) {
-  for (const ActivePair<S>& pair : contacts_->active()) {
+void Measurements<S>::weigh_contacts(At at, Out out) {
+  for (const ActivePair<S>& pair : at.contacts->active()) {
     const auto& weight = contact_weights_[static_cast<std::size_t>(pair.contact)];
-    for (const TouchingPoint<S>& point : contacts_->points(pair)) {
+    for (const TouchingPoint<S>& point : at.contacts->points(pair)) {
       weigh_touch(pair, point, weight);
     }
   }
   for_each_point_change(
-      *contacts_, at.mechanism, out.set,
+      *at.contacts, at.applied,
       [&](int i, const ActivePair<S>& pair, const TouchingPoint<S>& point,
           const PointChange<S>& change) {
         const auto& weight = contact_weights_[static_cast<std::size_t>(pair.contact)];
@@ -270,103 +267,128 @@ void Measurements<S>::weigh_contacts(const Instant& at, Gradients& out) {
         const Vector3<S> f =
             wrench_change<S>(reaction, pair.motion, point, change).on_a.template tail<3>();
         const Vector3<S> n = point.dn_dx * change.x + change.n;
-        out.by_p[i] +=
+        out.p[i] +=
             f.dot(weight.template tail<3>()) + weight[0] * (f.dot(point.n) + point.force.f.dot(n));
       });
 }
 
 template <Scalar S>
-void Measurements<S>::read(const MotorTorque& m, const Instant& at, Rows out) const {
+void Measurements<S>::read(const MotorTorque& m, At at, Rows out) const {
   int row = 0;
-  for_each_motor_force<S>(model_, at.mechanism, m.motor, at.q, at.qdot, at.u,
+  for_each_motor_force<S>(model_, at, m.motor,
                           [&](int, int, const MotorForce<S>& force) { out[row++] = force.tau; });
 }
 
 template <Scalar S>
-void Measurements<S>::weigh(const MotorTorque& m, const Instant& at, const VectorView<S>& y,
-                            Gradients& out) {
+void Measurements<S>::weigh(const MotorTorque& m, At at, Weights y, Out out) {
   int row = 0;
-  for_each_motor_force<S>(model_, at.mechanism, m.motor, at.q, at.qdot, at.u,
-                          [&](int c, int i, const MotorForce<S>& force) {
-                            out.add_force(m.motor, c, i, force, y[row++]);
-                          });
+  for_each_motor_force<S>(model_, at, m.motor, [&](int c, int i, const MotorForce<S>& force) {
+    add_force<S>(at, m.motor, c, i, force, y[row++], out);
+  });
 }
 
 template <Scalar S>
-void Measurements<S>::read(const MotorPower& m, const Instant& at, Rows out) const {
+void Measurements<S>::read(const MotorPower& m, At at, Rows out) const {
   out[0] = S(0.0);
-  for_each_motor_force<S>(
-      model_, at.mechanism, m.motor, at.q, at.qdot, at.u,
-      [&](int c, int, const MotorForce<S>& force) { out[0] += force.tau * at.qdot[c]; });
+  for_each_motor_force<S>(model_, at, m.motor, [&](int c, int, const MotorForce<S>& force) {
+    out[0] += force.tau * at.qdot[c];
+  });
 }
 
 template <Scalar S>
-void Measurements<S>::weigh(const MotorPower& m, const Instant& at, const VectorView<S>& y,
-                            Gradients& out) {
-  for_each_motor_force<S>(model_, at.mechanism, m.motor, at.q, at.qdot, at.u,
-                          [&](int c, int i, const MotorForce<S>& force) {
-                            out.by_qdot[c] += y[0] * force.tau;
-                            out.add_force(m.motor, c, i, force, y[0] * at.qdot[c]);
-                          });
+void Measurements<S>::weigh(const MotorPower& m, At at, Weights y, Out out) {
+  for_each_motor_force<S>(model_, at, m.motor, [&](int c, int i, const MotorForce<S>& force) {
+    out.qdot[c] += y[0] * force.tau;
+    add_force<S>(at, m.motor, c, i, force, y[0] * at.qdot[c], out);
+  });
 }
 
-/// What a weight on a link's mass means for the parameters that it follows.
+/// What weights on the links' masses mean for the parameters that these follow.
+///
+/// @param weight  weight(link)
 template <Scalar S>
-void Measurements<S>::weigh_mass(int link, const Instant& at, const S& weight,
-                                 Gradients& out) const {
-  const S& mass = at.mechanism.mass[link];
-  const int nominal = out.set.index(ParameterKind::kMass, link, 0);
-  if (nominal >= 0) {
-    out.by_p[nominal] += weight * mass / out.values[nominal];
+template <typename Weight>
+void Measurements<S>::weigh_masses(At at, const Weight& weight, Out out) const {
+  for (const ParameterBlock& block : at.applied.set.blocks()) {
+    const ParameterKindRow& kind = row_of(block.kind);
+    if (kind.effect != ParameterEffect::kInertia) {
+      continue;
+    }
+    const S by_mass = weight(block.owner);
+    for (int i = block.first; i < block.first + block.size; ++i) {
+      const InertiaRate<S> rate =
+          kind.actions<S>().inertia_rate(model_, at.applied.mechanism, block.owner,
+                                         {at.applied.set[i].component, at.applied.p[i]});
+      out.p[i] += by_mass * rate.mass;
+    }
   }
-  const Shape& shape = model_.link(link).body.shape;
-  const Vector3<S> sizes = at.mechanism.sizes.col(link);
-  for (int k = 0; k < size_count(shape); ++k) {
-    const S growth = unit_solid_rate<S>(shape, sizes, k).mass / unit_solid<S>(shape, sizes).mass;
-    out.add_parameter(ParameterKind::kSize, link, k, weight * mass * growth);
-  }
 }
 
 template <Scalar S>
-void Measurements<S>::read(const CentreOfMass&, const Instant& at, Rows out) const {
+void Measurements<S>::read(const CentreOfMass&, At at, Rows out) const {
   out.setZero();
   for (int link = 0; link < model_.link_count(); ++link) {
-    out += at.mechanism.mass[link] * at.body(model_, link).X_WB.p;
+    out += at.applied.mechanism.mass[link] * body_at<S>(model_, at, link).X_WB.p;
   }
-  out /= at.mechanism.mass.sum();
+  out /= at.applied.mechanism.mass.sum();
 }
 
 template <Scalar S>
-void Measurements<S>::weigh(const CentreOfMass& m, const Instant& at, const VectorView<S>& y,
-                            Gradients& out) {
+void Measurements<S>::weigh(const CentreOfMass& m, At at, Weights y, Out out) {
   Vector3<S> centre;
   read(m, at, centre);
-  const Vector3<S> weight = y / at.mechanism.mass.sum();
+  const Vector3<S> weight = y / at.applied.mechanism.mass.sum();
+  const auto place = [&](int link) -> Vector3<S> { return body_at<S>(model_, at, link).X_WB.p; };
   for (int link = 0; link < model_.link_count(); ++link) {
-    const Vector3<S> x = at.body(model_, link).X_WB.p;
-    const Vector3<S> force = at.mechanism.mass[link] * weight;
-    links_.add_to_body(link, spatial<S>(x.cross(force), force), Vector6<S>::Zero());
-    weigh_mass(link, at, weight.dot(x - centre), out);
+    const Vector3<S> force = at.applied.mechanism.mass[link] * weight;
+    links_.add_to_body(link, spatial<S>(place(link).cross(force), force), Vector6<S>::Zero());
   }
+  weigh_masses(
+      at, [&](int link) -> S { return weight.dot(place(link) - centre); }, out);
 }
 
 template <Scalar S>
-void Measurements<S>::read(const LinearMomentum&, const Instant& at, Rows out) const {
+void Measurements<S>::read(const LinearMomentum&, At at, Rows out) const {
   out.setZero();
   for (int link = 0; link < model_.link_count(); ++link) {
-    const BodyMotion<S> body = at.body(model_, link);
-    out += at.mechanism.mass[link] * velocity_at<S>(body, body.X_WB.p);
+    const BodyMotion<S> body = body_at<S>(model_, at, link);
+    out += at.applied.mechanism.mass[link] * velocity_at<S>(body, body.X_WB.p);
   }
 }
 
 template <Scalar S>
-void Measurements<S>::weigh(const LinearMomentum&, const Instant& at, const VectorView<S>& y,
-                            Gradients& out) {
+void Measurements<S>::weigh(const LinearMomentum&, At at, Weights y, Out out) {
   for (int link = 0; link < model_.link_count(); ++link) {
-    const BodyMotion<S> body = at.body(model_, link);
-    weigh_velocity(body, link, body.X_WB.p, at.mechanism.mass[link] * y);
-    weigh_mass(link, at, y.dot(velocity_at<S>(body, body.X_WB.p)), out);
+    const BodyMotion<S> body = body_at<S>(model_, at, link);
+    weigh_velocity(body, link, body.X_WB.p, at.applied.mechanism.mass[link] * y);
   }
+  const auto speed = [&](int link) -> S {
+    const BodyMotion<S> body = body_at<S>(model_, at, link);
+    return y.dot(velocity_at<S>(body, body.X_WB.p));
+  };
+  weigh_masses(at, speed, out);
+}
+
+template <Scalar S>
+void Measurements<S>::read(const EndEffectorPosition& m, At at, Rows out) const {
+  out = position_of<S>(model_, at, m);
+}
+
+template <Scalar S>
+void Measurements<S>::weigh(const EndEffectorPosition& m, At at, Weights y, Out) {
+  const Vector3<S> force = y;
+  const EndEffector& point = model_.end_effectors()[static_cast<std::size_t>(m.end_effector)];
+  links_.add_to_joint(point.link, spatial<S>(position_of<S>(model_, at, m).cross(force), force));
+}
+
+template <Scalar S>
+void Measurements<S>::read(const TactileReading& m, At, Rows out) const {
+  tactile_.read(m.sensor, out);
+}
+
+template <Scalar S>
+void Measurements<S>::weigh(const TactileReading& m, At at, Weights y, Out out) {
+  tactile_.pull_back(m.sensor, y, at.applied, links_, out.p);
 }
 
 template class Measurements<double>;

@@ -1,16 +1,16 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "hbar/contact/contact_forces.h"
+#include "hbar/adjoint/outputs/instant.h"
+#include "hbar/contact/tactile.h"
 #include "hbar/core/model/measurement.h"
 #include "hbar/core/parameters/link_pullback.h"
 
 namespace hbar {
 
-/// The declared measurements of a model at one instant: their rows, one after the other, and the
+/// Measurements of a model at one instant: their rows, one after the other, and the
 /// transposed derivative by everything they depend on. notation.md has the formulas.
 ///
 /// Borrows the model. Sized once, reused; evaluations allocate nothing (ContactForces' limit on
@@ -18,62 +18,65 @@ namespace hbar {
 template <Scalar S>
 class Measurements {
  public:
-  /// @throws InvalidInput as check_measurements
+  /// @param measurements  that the model can have (check_measurements)
   Measurements(const Model& model, std::vector<Measurement> measurements);
 
   /// Rows of all measurements together.
   [[nodiscard]] int size() const { return static_cast<int>(names_.size()); }
+  [[nodiscard]] bool empty() const { return names_.empty(); }
   /// Names of the rows: "tip_speed.x", …                                             [size()]
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
 
-  /// @param motion   poses and twists at (q, q̇)                                (A is not read)
-  /// @param q, qdot  coordinates and rates                                            [dof]
-  /// @param u        controls                                                         [controls]
-  /// @param out      rows                                                             [size()]
-  void readings(const Mechanism<S>& mechanism, const Motion<S>& motion, const VectorView<S>& q,
-                const VectorView<S>& qdot, const VectorView<S>& u, Eigen::Ref<VectorX<S>> out);
+  /// Whether rows read contact forces: instants must then have them.
+  [[nodiscard]] bool reads_contacts() const { return reads_contacts_; }
 
-  /// Transposed derivative: weights y on the rows are added as gradients.
+  /// Finds what tactile sensors touch, once per instant, before the following.
+  void linearize(const Instant<S>& at);
+
+  /// @param out  rows                                                                  [size()]
+  void read(const Instant<S>& at, Eigen::Ref<VectorX<S>> out) const;
+
+  /// Transposed derivative: weights on the rows are added as gradients. Rows without weight cost
+  /// nothing; any number of pull-backs may follow one linearize().
   ///
-  /// @param p, grad_p              values of, and gradient by, the set's parameters    [set.size()]
-  /// @param y                      weights                                             [size()]
-  /// @param by_q, by_qdot, by_u    gradients by coordinates, rates and controls  [dof, dof,
-  /// controls]
-  void pull_back(const Mechanism<S>& mechanism, const ParameterSet& set, const VectorView<S>& p,
-                 const Motion<S>& motion, const VectorView<S>& q, const VectorView<S>& qdot,
-                 const VectorView<S>& u, const VectorView<S>& y, Eigen::Ref<VectorX<S>> by_q,
-                 Eigen::Ref<VectorX<S>> by_qdot, Eigen::Ref<VectorX<S>> by_u,
-                 Eigen::Ref<VectorX<S>> grad_p);
+  /// @param y  weights                                                                 [size()]
+  void pull_back(const Instant<S>& at, const VectorView<S>& y, InstantGradient<S>& out);
 
  private:
   using Rows = Eigen::Ref<VectorX<S>>;
-  struct Instant;
-  struct Gradients;
+  using At = const Instant<S>&;
+  using Weights = const VectorView<S>&;
+  using Out = InstantGradient<S>&;
 
   // The rows of each kind.
-  void read(const PointVelocity& m, const Instant& at, Rows out) const;
-  void read(const Orientation& m, const Instant& at, Rows out) const;
-  void read(const BodyDistance& m, const Instant& at, Rows out) const;
-  void read(const ContactForce& m, const Instant& at, Rows out) const;
-  void read(const MotorTorque& m, const Instant& at, Rows out) const;
-  void read(const MotorPower& m, const Instant& at, Rows out) const;
-  void read(const CentreOfMass& m, const Instant& at, Rows out) const;
-  void read(const LinearMomentum& m, const Instant& at, Rows out) const;
+  void read(const PointVelocity& m, At at, Rows out) const;
+  void read(const Orientation& m, At at, Rows out) const;
+  void read(const BodyDistance& m, At at, Rows out) const;
+  void read(const ContactForce& m, At at, Rows out) const;
+  void read(const MotorTorque& m, At at, Rows out) const;
+  void read(const MotorPower& m, At at, Rows out) const;
+  void read(const CentreOfMass& m, At at, Rows out) const;
+  void read(const LinearMomentum& m, At at, Rows out) const;
+  void read(const EndEffectorPosition& m, At at, Rows out) const;
+  void read(const TactileReading& m, At at, Rows out) const;
 
   // Their transposes; y are the weights of the measurement's own rows.
-  void weigh(const PointVelocity& m, const Instant& at, const VectorView<S>& y, Gradients& out);
-  void weigh(const Orientation& m, const Instant& at, const VectorView<S>& y, Gradients& out);
-  void weigh(const BodyDistance& m, const Instant& at, const VectorView<S>& y, Gradients& out);
-  void weigh(const ContactForce& m, const Instant& at, const VectorView<S>& y, Gradients& out);
-  void weigh(const MotorTorque& m, const Instant& at, const VectorView<S>& y, Gradients& out);
-  void weigh(const MotorPower& m, const Instant& at, const VectorView<S>& y, Gradients& out);
-  void weigh(const CentreOfMass& m, const Instant& at, const VectorView<S>& y, Gradients& out);
-  void weigh(const LinearMomentum& m, const Instant& at, const VectorView<S>& y, Gradients& out);
+  void weigh(const PointVelocity& m, At at, Weights y, Out out);
+  void weigh(const Orientation& m, At at, Weights y, Out out);
+  void weigh(const BodyDistance& m, At at, Weights y, Out out);
+  void weigh(const ContactForce& m, At at, Weights y, Out out);
+  void weigh(const MotorTorque& m, At at, Weights y, Out out);
+  void weigh(const MotorPower& m, At at, Weights y, Out out);
+  void weigh(const CentreOfMass& m, At at, Weights y, Out out);
+  void weigh(const LinearMomentum& m, At at, Weights y, Out out);
+  void weigh(const EndEffectorPosition& m, At at, Weights y, Out out);
+  void weigh(const TactileReading& m, At at, Weights y, Out out);
 
   void weigh_velocity(const BodyMotion<S>& body, int link, const Vector3<S>& x,
                       const Vector3<S>& weight);
-  void weigh_mass(int link, const Instant& at, const S& weight, Gradients& out) const;
-  void weigh_contacts(const Instant& at, Gradients& out);
+  template <typename Weight>
+  void weigh_masses(At at, const Weight& weight, Out out) const;
+  void weigh_contacts(At at, Out out);
   void weigh_touch(const ActivePair<S>& pair, const TouchingPoint<S>& point,
                    const Eigen::Matrix<S, 4, 1>& weight);
 
@@ -82,8 +85,9 @@ class Measurements {
   std::vector<int> first_;  // row of each measurement, and the end of the last
   std::vector<std::string> names_;
   LinkPullback<S> links_;
-  std::optional<ContactForces<S>> contacts_;             // where a measurement asks for them
-  std::vector<Eigen::Matrix<S, 4, 1>> contact_weights_;  // per contact
+  TactileReadings<S> tactile_;
+  std::vector<Eigen::Matrix<S, 4, 1>> contact_weights_;  // per contact, if forces are read
+  bool reads_contacts_ = false;
 };
 
 }  // namespace hbar

@@ -15,39 +15,33 @@ namespace {
 
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
+/// The horizon's stages, no step halved, at rest.
+Trajectory empty_trajectory(const Horizon& horizon) {
+  const SimulationOptions& options = horizon.options();
+  Trajectory out;
+  out.timeline = even_timeline(horizon.integrator(), options.h, options.steps, options.restarts);
+  out.q.setZero(horizon.model().dof(), out.timeline.stage_count());
+  out.qdot.setZero(horizon.model().dof(), out.timeline.stage_count());
+  return out;
+}
+
 }  // namespace
 
 AllAtOnce::AllAtOnce(const TrajectoryProblem& problem, const TranscriptionOptions& options)
     : Transcription(problem),
+      trajectory_(empty_trajectory(problem_.horizon)),
+      layout_(head_, trajectory_.timeline, problem_.horizon.model().dof()),
+      dependence_(problem_.horizon, head_, layout_),
       residual_(problem_.horizon),
       linearizer_(problem_.horizon),
-      hessian_(problem_.horizon, head_.design_count()),
+      hessian_(problem_, head_, layout_, dependence_),
       reader_(problem_.horizon),
-      outputs_(problem_.horizon.model(), problem_.horizon.options().measurements) {
-  const SimulationOptions& simulation = problem_.horizon.options();
-  trajectory_.timeline = even_timeline(find_integrator(simulation.integrator), simulation.h,
-                                       simulation.steps, simulation.restarts);
+      row_scale_(Eigen::VectorXd::Ones(layout_.dof() * trajectory_.timeline.last_stage())) {
   guess(options.q_guess);
-  lay_out_stages();
-  lay_out_outputs();
-  row_scale_.setOnes(problem_.horizon.model().dof() * trajectory_.timeline.last_stage());
   differentiate(variables_.start);
   const Linearization& system = linearizer_.linearize(trajectory_);
   scale_rows(system);
   lay_out_jacobian(system);
-}
-
-Eigen::Index AllAtOnce::stage_place(int stage) const {
-  if (stage == 0) {
-    return head_.state_is_free() ? head_.state_place() : -1;
-  }
-  return head_.size() + (stage - 1) * problem_.horizon.model().dof();
-}
-
-int AllAtOnce::step_ended_by(int stage) const {
-  const Timeline& timeline = trajectory_.timeline;
-  const int step = stage == 0 ? -1 : timeline.stage(stage).step;
-  return timeline.step_end(step + 1) == stage ? step + 1 : -1;
 }
 
 /// Variables for the stages' coordinates, and equations for their residuals.
@@ -79,32 +73,6 @@ void AllAtOnce::guess(const Eigen::MatrixXd& q_guess) {
   }
   add_variables(more);
   add_equations(equations);
-  trajectory_.q.setZero(n, timeline.stage_count());
-  trajectory_.qdot.setZero(n, timeline.stage_count());
-}
-
-void AllAtOnce::lay_out_stages() {
-  const Timeline& timeline = trajectory_.timeline;
-  const int n = problem_.horizon.model().dof();
-  stages_.resize(static_cast<std::size_t>(timeline.stage_count()));
-  if (head_.state_is_free()) {
-    stages_[0] = {{stage_place(0), 1.0, 0.0, 0.0, 0.0, 0.0},
-                  {stage_place(0) + n, 0.0, 1.0, 0.0, 0.0, 0.0}};
-  }
-  for (int s = 1; s <= timeline.last_stage(); ++s) {
-    std::vector<StageEntry>& entries = stages_[static_cast<std::size_t>(s)];
-    const FlatStencil<double> stencil = flat_stencil(timeline, s);
-    for (const StencilEntry<double>& entry : stencil.entries) {
-      if (stage_place(entry.stage) >= 0) {
-        entries.push_back({stage_place(entry.stage), entry.stage == s ? 1.0 : 0.0, entry.qdot,
-                           entry.a, entry.start_q, entry.start_qdot});
-      }
-    }
-    if (head_.state_is_free() && stencil.reaches_start) {
-      entries.push_back(
-          {stage_place(0) + n, 0.0, 0.0, stencil.a_by_qdot0, 0.0, stencil.start_qdot_by_qdot0});
-    }
-  }
 }
 
 void AllAtOnce::scale_rows(const Linearization& system) {
@@ -231,6 +199,7 @@ void AllAtOnce::differentiate(const Eigen::VectorXd& x) {
   move_to(x);
   if (!differentiated_) {
     map_jacobian_ = problem_.map->jacobian(design(x));
+    dependence_.move_to(trajectory_, map_jacobian_);
     differentiated_ = true;
   }
 }
@@ -254,6 +223,21 @@ void AllAtOnce::constraint_jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& v
   if (head_.state_is_free()) {
     put_matrix(system.dg_dq0.matrix());
     put_matrix(system.dg_dqdot0.matrix());
+  }
+}
+
+void AllAtOnce::lagrangian_hessian(const Eigen::VectorXd& x, double sigma,
+                                   const Eigen::VectorXd& lambda, solvers::HessianKind kind,
+                                   Eigen::VectorXd& values) {
+  const Stopwatch stopwatch(times_.hessian);
+  ++times_.hessians;
+  HessianPlan& at = plan(kind);
+  differentiate(x);
+  begin_values(at, values_, sigma, lambda, values);
+  if (kind == solvers::HessianKind::kExact) {
+    hessian_.put(trajectory_, design(x), map_jacobian_,
+                 lambda.tail(row_scale_.size()).cwiseProduct(row_scale_),
+                 lagrangian_partials(values_, sigma, lambda), at.entries);
   }
 }
 

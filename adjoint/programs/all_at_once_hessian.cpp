@@ -1,19 +1,13 @@
-// The Hessian of the Lagrangian of AllAtOnce.
-#include "hbar/adjoint/derivatives/gradient.h"
-#include "hbar/adjoint/programs/all_at_once.h"
+#include "hbar/adjoint/programs/all_at_once_hessian.h"
+
+#include <set>
+#include <variant>
+
+#include "hbar/core/model/drives.h"
+#include "hbar/core/parameters/sparsity.h"
 
 namespace hbar {
-
-void AllAtOnce::add_curvature(EntryPlan& entries) const {
-  for (int s = 0; s < trajectory_.timeline.stage_count(); ++s) {
-    add_stage(s, entries);
-  }
-  for (Eigen::Index j = 0; j < head_.design_count(); ++j) {
-    for (Eigen::Index i = j; i < head_.design_count(); ++i) {
-      entries.add(i, j);
-    }
-  }
-}
+namespace {
 
 /// Visits the pairs of a stage's runs of x that have second derivatives: f(a, b), b not behind a.
 /// Coordinates meet those of another run at their own stage, rates each other.
@@ -33,14 +27,104 @@ void for_each_pair(const Entries& entries, const F& f) {
   }
 }
 
-void AllAtOnce::add_stage(int stage, EntryPlan& entries) const {
-  const std::vector<StageEntry>& runs = stages_[static_cast<std::size_t>(stage)];
-  const int n = problem_.horizon.model().dof();
-  const int step = step_ended_by(stage);
-  const bool reads_controls = step >= 0 && problem_.horizon.measured_count() > 0;
+std::vector<std::vector<int>> listed(const std::vector<std::set<int>>& sets) {
+  std::vector<std::vector<int>> out;
+  for (const std::set<int>& set : sets) {
+    out.emplace_back(set.begin(), set.end());
+  }
+  return out;
+}
+
+}  // namespace
+
+AllAtOnceHessian::AllAtOnceHessian(const TrajectoryProblem& problem, const InputVariables& head,
+                                   const StageLayout& layout, const ValueDependence& values)
+    : map_(problem.map),
+      head_(head),
+      layout_(layout),
+      stage_(problem.horizon, head.design_count()) {
+  lay_out_pairs(problem.horizon, values);
+  lay_out_gains(problem.horizon);
+}
+
+/// By which pairs anything has second derivatives: of coordinates (the residual's, and where
+/// measurements read bodies of two branches), of a control and a rate (a motor's power).
+void AllAtOnceHessian::lay_out_pairs(const Horizon& horizon, const ValueDependence& values) {
+  std::vector<std::set<int>> pairs;
+  for (const std::vector<int>& others : residual_pattern(horizon.model())) {
+    pairs.emplace_back(others.begin(), others.end());
+  }
+  std::vector<std::set<int>> own = pairs;
+  const auto couple = [](const std::vector<int>& coordinates, std::vector<std::set<int>>& all) {
+    for (const int c : coordinates) {
+      all[static_cast<std::size_t>(c)].insert(coordinates.begin(), coordinates.end());
+    }
+  };
+  std::set<std::pair<int, int>> powers;
+  int row = 0;
+  for (const Measurement& measurement : horizon.measurements()) {
+    const int end = row + static_cast<int>(row_names(horizon.model(), measurement).size());
+    if (row == end) {
+      continue;
+    }
+    const MeasuredReads& reads = values.reads(row);
+    reads_controls_ = reads_controls_ || !reads.controls.empty();
+    if (std::holds_alternative<BodyDistance>(measurement)) {
+      couple(reads.q, own);
+    } else if (std::holds_alternative<TactileReading>(measurement)) {
+      couple(reads.q, own);
+      couple(reads.q, pairs);
+    } else if (std::holds_alternative<MotorPower>(measurement)) {
+      for (std::size_t i = 0; i < reads.controls.size(); ++i) {
+        powers.emplace(reads.controls[i], reads.qdot[i]);  // once, if measured twice
+      }
+    }
+    row = end;
+  }
+  pairs_ = listed(pairs);
+  own_pairs_ = listed(own);
+  control_rates_.assign(powers.begin(), powers.end());
+}
+
+/// And of a design variable and a control: a motor's P.
+void AllAtOnceHessian::lay_out_gains(const Horizon& horizon) {
+  std::set<std::pair<Eigen::Index, int>> gains;
+  for (int m = 0; m < static_cast<int>(horizon.model().motors().size()); ++m) {
+    const int gain = horizon.parameters().index(ParameterKind::kMotorP, m, 0);
+    if (gain >= 0) {
+      for (const Eigen::Index i : head_.designs_of(gain)) {
+        for_each_drive(horizon.model(), m, [&](int, int control) { gains.emplace(i, control); });
+      }
+    }
+  }
+  gain_controls_.assign(gains.begin(), gains.end());
+}
+
+const std::vector<int>& AllAtOnceHessian::pairs_of(const StageRun& a, const StageRun& b,
+                                                   int coordinate) const {
+  const bool own = a.q != 0.0 && b.q != 0.0;
+  return (own ? own_pairs_ : pairs_)[static_cast<std::size_t>(coordinate)];
+}
+
+void AllAtOnceHessian::add(EntryPlan& entries) const {
+  for (int s = 0; s < layout_.stage_count(); ++s) {
+    add_stage(s, entries);
+  }
+  for (Eigen::Index j = 0; j < head_.design_count(); ++j) {
+    for (Eigen::Index i = j; i < head_.design_count(); ++i) {
+      entries.add(i, j);
+    }
+  }
+}
+
+void AllAtOnceHessian::add_stage(int stage, EntryPlan& entries) const {
+  const std::vector<StageRun>& runs = layout_.runs(stage);
+  const int n = layout_.dof();
+  const int step = layout_.step_ended_by(stage);
+  const bool reads_controls = step >= 0 && reads_controls_;
   const Eigen::Index control =
       head_.control_place(head_.block_of_step(measured_step(step > 0 ? step : 0)));
-  for_each_pair(runs, [&](const StageEntry& a, const StageEntry& b) {
+  for_each_pair(runs, [&](const StageRun& a, const StageRun& b) {
     for (int c = 0; c < n; ++c) {
       for (const int other : pairs_of(a, b, c)) {
         if (a.place != b.place || other <= c) {
@@ -49,7 +133,7 @@ void AllAtOnce::add_stage(int stage, EntryPlan& entries) const {
       }
     }
   });
-  for (const StageEntry& run : runs) {
+  for (const StageRun& run : runs) {
     for (int c = 0; c < n; ++c) {
       for (Eigen::Index i = 0; i < head_.design_count(); ++i) {
         entries.add_lower(run.place + c, i);
@@ -62,20 +146,18 @@ void AllAtOnce::add_stage(int stage, EntryPlan& entries) const {
     }
   }
   if (stage > 0 || reads_controls) {
-    const int acting = stage > 0 ? trajectory_.timeline.stage(stage).step : 0;
     for (const auto& [i, k] : gain_controls_) {
-      entries.add_lower(head_.control_place(head_.block_of_step(acting)) + k, i);
+      entries.add_lower(head_.control_place(head_.block_of_step(layout_.step_of(stage))) + k, i);
     }
   }
 }
 
-void AllAtOnce::put_stage(int stage, EntryPlan& entries) const {
-  const std::vector<StageEntry>& runs = stages_[static_cast<std::size_t>(stage)];
-  const StageHessian& h = hessian_;
-  const int n = problem_.horizon.model().dof();
-  const int step = step_ended_by(stage);
-  const bool reads_controls = step >= 0 && problem_.horizon.measured_count() > 0;
-  for_each_pair(runs, [&](const StageEntry& a, const StageEntry& b) {
+void AllAtOnceHessian::put_stage(int stage, const StageCurvature& h, EntryPlan& entries) const {
+  const std::vector<StageRun>& runs = layout_.runs(stage);
+  const int n = layout_.dof();
+  const int step = layout_.step_ended_by(stage);
+  const bool reads_controls = step >= 0 && reads_controls_;
+  for_each_pair(runs, [&](const StageRun& a, const StageRun& b) {
     const double by_qq = a.q * b.q;
     const double by_qv = a.q * b.qdot;
     const double by_vq = a.qdot * b.q;
@@ -91,7 +173,7 @@ void AllAtOnce::put_stage(int stage, EntryPlan& entries) const {
       }
     }
   });
-  for (const StageEntry& run : runs) {
+  for (const StageRun& run : runs) {
     for (int c = 0; c < n; ++c) {
       for (Eigen::Index i = 0; i < head_.design_count(); ++i) {
         entries.put(run.q * h.dq(i, c) + run.qdot * h.dv(i, c) + run.a * h.da(i, c) +
@@ -111,51 +193,33 @@ void AllAtOnce::put_stage(int stage, EntryPlan& entries) const {
   }
 }
 
-OutputRows<double> AllAtOnce::output_weights(const TrajectoryPartials& partials, int k) const {
-  return {partials.v.col(k), partials.tactile.col(k), partials.measured.col(k)};
-}
-
-void AllAtOnce::lagrangian_hessian(const Eigen::VectorXd& x, double sigma,
-                                   const Eigen::VectorXd& lambda, solvers::HessianKind kind,
-                                   Eigen::VectorXd& values) {
-  const Stopwatch stopwatch(times_.hessian);
-  ++times_.hessians;
-  HessianPlan& at = plan(kind);
-  differentiate(x);
-  begin_values(at, values_, sigma, lambda, values);
-  if (kind != solvers::HessianKind::kExact) {
-    return;
-  }
-  const Eigen::Index n = problem_.horizon.model().dof();
-  const TrajectoryPartials partials = lagrangian_partials(values_, sigma, lambda);
-  hessian_.set_parameters(trajectory_.inputs.p, map_jacobian_);
-  Eigen::MatrixXd dd = Eigen::MatrixXd::Zero(head_.design_count(), head_.design_count());
-  Eigen::VectorXd by_p = partials.p;
-  for (int s = 0; s < trajectory_.timeline.stage_count(); ++s) {
-    const int step = step_ended_by(s);
-    OutputRows<double> y;
+void AllAtOnceHessian::put(const Trajectory& trajectory, const Eigen::VectorXd& d,
+                           const Eigen::MatrixXd& map_jacobian, const Eigen::VectorXd& z,
+                           const TrajectoryPartials& weights, EntryPlan& entries) {
+  const Eigen::Index n = layout_.dof();
+  stage_.set_parameters(trajectory.inputs.p, map_jacobian);
+  Eigen::MatrixXd dd = Eigen::MatrixXd::Zero(d.size(), d.size());
+  Eigen::VectorXd by_p = weights.p;
+  Eigen::VectorXd y;
+  for (int s = 0; s < layout_.stage_count(); ++s) {
+    const int step = layout_.step_ended_by(s);
     if (step >= 0) {
-      y = output_weights(partials, step);
+      y = weights.measured.col(step);
     }
-    if (s == 0) {
-      hessian_.evaluate_start(trajectory_, y);
-    } else {
-      const Eigen::Index first = (s - 1) * n;
-      hessian_.evaluate(
-          trajectory_, s,
-          lambda.segment(own_rows() + first, n).cwiseProduct(row_scale_.segment(first, n)),
-          step >= 0 ? &y : nullptr);
-    }
-    put_stage(s, at.entries);
-    dd += hessian_.dd;
-    by_p += hessian_.by_p;
+    const StageCurvature& curvature =
+        s == 0
+            ? stage_.evaluate_start(trajectory, y)
+            : stage_.evaluate(trajectory, s, z.segment((s - 1) * n, n), step >= 0 ? &y : nullptr);
+    put_stage(s, curvature, entries);
+    dd += curvature.dd;
+    by_p += curvature.by_p;
   }
-  if (head_.design_count() > 0) {
-    dd += problem_.map->hessian(design(x), by_p);
+  if (d.size() > 0) {
+    dd += map_->hessian(d, by_p);
   }
   for (Eigen::Index j = 0; j < dd.cols(); ++j) {
     for (Eigen::Index i = j; i < dd.rows(); ++i) {
-      at.entries.put(dd(i, j));
+      entries.put(dd(i, j));
     }
   }
 }

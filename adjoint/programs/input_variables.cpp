@@ -4,6 +4,7 @@
 
 #include "hbar/adjoint/programs/state_variables.h"
 #include "hbar/adjoint/terms/value_access.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "hbar/solvers/nlp/scaled_nlp.h"
 

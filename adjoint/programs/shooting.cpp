@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "hbar/adjoint/outputs/measured_reads.h"
 #include "hbar/adjoint/programs/state_variables.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
@@ -20,10 +21,6 @@ const Eigen::MatrixXd* tangents_of(const Tangents& tangents, ValueField field) {
       return &tangents.q;
     case ValueField::kQdot:
       return &tangents.qdot;
-    case ValueField::kV:
-      return &tangents.v;
-    case ValueField::kTactile:
-      return &tangents.tactile;
     case ValueField::kMeasured:
       return &tangents.measured;
     default:
@@ -67,6 +64,11 @@ Shooting::Shooting(const TrajectoryProblem& problem, const TranscriptionOptions&
   }
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   threads_ = options.threads > 0 ? options.threads : std::max(1, cores);
+  for (const Measurement& measurement : problem_.horizon.measurements()) {
+    for (const MeasuredReads& reads : measured_reads(problem_.horizon.model(), measurement)) {
+      reads_controls_.push_back(reads.controls.empty() ? 0 : 1);
+    }
+  }
   lay_out_segments(options);
   lay_out_jacobian();
 }
@@ -149,7 +151,8 @@ std::vector<Eigen::Index> Shooting::columns_of(const ValuePlace& place) const {
       if (place.step > 0) {
         const Eigen::Index end = head_.control_place(head_.block_of_step(place.step - 1) + 1);
         add_run(columns.first_control, end - columns.first_control);
-      } else if (place.field == ValueField::kMeasured) {
+      } else if (place.field == ValueField::kMeasured &&
+                 reads_controls_[static_cast<std::size_t>(place.index)] != 0) {
         add_run(columns.first_control, head_.control_count());
       }
       add_run(columns.first_state, columns.state);
@@ -253,9 +256,10 @@ void Shooting::gather_values(const Inputs& whole) {
   values_.h = problem_.horizon.options().h;
   values_.u = whole.u;
   values_.p = whole.p;
-  for (Eigen::MatrixXd TrajectoryValues::*field :
-       {&TrajectoryValues::q, &TrajectoryValues::qdot, &TrajectoryValues::v,
-        &TrajectoryValues::tactile, &TrajectoryValues::measured}) {
+  values_.measured_rows = segments_[0]->values().measured_rows;
+  using Member = Eigen::MatrixXd TrajectoryValues::*;
+  for (const Member field : {Member{&TrajectoryValues::q}, Member{&TrajectoryValues::qdot},
+                             Member{&TrajectoryValues::measured}}) {
     Eigen::MatrixXd& all = values_.*field;
     all.resize((segments_[0]->values().*field).rows(), steps + 1);
     for (const auto& segment : segments_) {
@@ -289,8 +293,6 @@ TrajectoryPartials Shooting::share_of(const ShootingSegment& segment,
   };
   take(partials.q, out.q);
   take(partials.qdot, out.qdot);
-  take(partials.v, out.v);
-  take(partials.tactile, out.tactile);
   take(partials.measured, out.measured);
   out.u = partials.u.middleCols(first, steps);
   if (first == 0) {

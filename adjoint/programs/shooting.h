@@ -58,6 +58,7 @@ class Shooting final : public Transcription {
   void put_curvature(double sigma, const Eigen::VectorXd& lambda, EntryPlan& entries);
 
   int threads_ = 1;
+  std::vector<char> reads_controls_;  // per measured row
   std::vector<std::unique_ptr<ShootingSegment>> segments_;
   EntryPlan jacobian_;
 

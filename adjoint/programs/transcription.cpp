@@ -94,7 +94,7 @@ void Transcription::own_constraints(const TrajectoryValues& values, Eigen::Vecto
 TrajectoryPartials Transcription::lagrangian_partials(const TrajectoryValues& values, double sigma,
                                                       const Eigen::VectorXd& lambda) const {
   TrajectoryPartials out = problem_.objective.partials(values);
-  for (Eigen::MatrixXd* field : {&out.q, &out.qdot, &out.v, &out.tactile, &out.measured, &out.u}) {
+  for (Eigen::MatrixXd* field : {&out.q, &out.qdot, &out.measured, &out.u}) {
     *field *= sigma;
   }
   out.p *= sigma;

@@ -1,6 +1,7 @@
 // What every transcription's Hessian begins with: the terms' second partials.
 #include "hbar/adjoint/programs/transcription.h"
 #include "hbar/adjoint/terms/value_access.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {

@@ -3,6 +3,7 @@
 #include "hbar/contact/contact_parameters.h"
 #include "hbar/core/model/drives.h"
 #include "hbar/core/parameters/frame_gradient.h"
+#include "hbar/core/parameters/parameter_kinds.h"
 
 namespace hbar {
 namespace {
@@ -38,96 +39,67 @@ InertiaWrenches<S> inertia_wrenches(const Model& model, const Mechanism<S>& mech
   return out;
 }
 
-/// ∂F of a link's body by one inertial parameter: mass and moments at nominal sizes, or a size.
-template <Scalar S>
-Vector6<S> inertial_wrench(const Model& model, const Mechanism<S>& mechanism,
-                           const InertiaWrenches<S>& wrenches, const ParameterBlock& block, int k,
-                           const S& value) {
-  const int link = block.owner;
-  if (block.kind == ParameterKind::kMass) {
-    // The mechanism's mass is the parameter's times what sizes make of it; so are the moments.
-    return (mechanism.mass[link] / value) * wrenches.by_mass;
-  }
-  if (block.kind == ParameterKind::kInertia) {
-    return (mechanism.moments(k, link) / value) * wrenches.by_moment[static_cast<std::size_t>(k)];
-  }
-  const Shape& shape = model.link(link).body.shape;
-  const Vector3<S> sizes = mechanism.sizes.col(link);
-  const UnitSolid<S> solid = unit_solid<S>(shape, sizes);
-  const UnitSolid<S> rate = unit_solid_rate<S>(shape, sizes, k);
-  Vector6<S> out = (mechanism.mass[link] * rate.mass / solid.mass) * wrenches.by_mass;
-  for (int i = 0; i < 3; ++i) {
-    out += (mechanism.moments(i, link) * rate.moments[i] / solid.moments[i]) *
-           wrenches.by_moment[static_cast<std::size_t>(i)];
-  }
-  return out;
-}
-
 }  // namespace
 
 template <Scalar S>
-void add_parameter_gradient(const Mechanism<S>& mechanism, const ParameterSet& set,
-                            const VectorView<S>& p, const StageResidual<S>& stage,
+void add_parameter_gradient(const Applied<S>& applied, const StageResidual<S>& stage,
                             const StagePoint<S>& point, const VectorView<S>& z, double factor,
                             Eigen::Ref<VectorX<S>> grad) {
   const Model& model = stage.model();
   const Motion<S>& motion = stage.motion();
   const Pullback<S>& pullback = stage.pullback();
-  const JointForces<S>& forces = stage.joint_forces();
   const double scale = factor * point.c();
-  for (const ParameterBlock& block : set.blocks()) {
-    switch (block.kind) {
-      case ParameterKind::kJointTransform: {
+  for (const ParameterBlock& block : applied.set.blocks()) {
+    const ParameterKindRow& kind = row_of(block.kind);
+    switch (kind.effect) {
+      case ParameterEffect::kJointFrame: {
         const Vector6<S> G = scale * pullback.joint_frame(first_node_of_link(model, block.owner));
-        add_frame_gradient<S>(model, mechanism, motion, set, block, p, G, grad);
+        add_frame_gradient<S>(model, applied, motion, block, G, grad);
         break;
       }
-      case ParameterKind::kBodyTransform: {
+      case ParameterEffect::kBodyFrame: {
         const Vector6<S> G = scale * stage.body_frame(block.owner);
-        add_frame_gradient<S>(model, mechanism, motion, set, block, p, G, grad);
+        add_frame_gradient<S>(model, applied, motion, block, G, grad);
         break;
       }
-      case ParameterKind::kMass:
-      case ParameterKind::kInertia:
-      case ParameterKind::kSize: {
-        const auto wrenches = inertia_wrenches<S>(model, mechanism, motion, block.owner);
+      case ParameterEffect::kInertia: {
+        const auto wrenches = inertia_wrenches<S>(model, applied.mechanism, motion, block.owner);
         const Vector6<S>& W = pullback.twist(model.node_of_link(block.owner));
+        const S by_mass = W.dot(wrenches.by_mass);
+        const Vector3<S> by_moments(W.dot(wrenches.by_moment[0]), W.dot(wrenches.by_moment[1]),
+                                    W.dot(wrenches.by_moment[2]));
         for (int i = block.first; i < block.first + block.size; ++i) {
-          grad[i] += scale * W.dot(inertial_wrench<S>(model, mechanism, wrenches, block,
-                                                      set[i].component, p[i]));
+          const InertiaRate<S> rate = kind.actions<S>().inertia_rate(
+              model, applied.mechanism, block.owner, {applied.set[i].component, applied.p[i]});
+          grad[i] += scale * (by_mass * rate.mass + by_moments.dot(rate.moments));
         }
         break;
       }
-      case ParameterKind::kContactPoint:
-      case ParameterKind::kContactScale:
-      case ParameterKind::kContactCoefficient:
-        break;  // by for_each_contact_change, below
-      case ParameterKind::kStiffness:
-      case ParameterKind::kDamping: {
-        const VectorX<S>& by =
-            block.kind == ParameterKind::kStiffness ? forces.by_stiffness : forces.by_damping;
+      case ParameterEffect::kJointForce: {
+        const VectorX<S>& by = stage.joint_forces().*(kind.actions<S>().force_by);
         const CoordinateRange range = model.coordinates_of_link(block.owner);
         for (int c = range.begin; c < range.end; ++c) {
           grad[block.first] -= scale * z[c] * by[c];
         }
         break;
       }
-      case ParameterKind::kMotorP:
-      case ParameterKind::kMotorD: {
-        const VectorX<S>& by = block.kind == ParameterKind::kMotorP ? forces.by_P : forces.by_D;
+      case ParameterEffect::kMotorForce: {
+        const VectorX<S>& by = stage.joint_forces().*(kind.actions<S>().force_by);
         for_each_drive(model, block.owner,
                        [&](int c, int i) { grad[block.first] -= scale * z[c] * by[i]; });
         break;
       }
-      case ParameterKind::kGravity:
+      case ParameterEffect::kGravity:
         for (int i = block.first; i < block.first + block.size; ++i) {
-          grad[i] += scale * pullback.by_gravity()[set[i].component];
+          grad[i] += scale * pullback.by_gravity()[applied.set[i].component];
         }
+        break;
+      case ParameterEffect::kContact:
         break;
     }
   }
   for_each_contact_change(
-      stage.contacts(), mechanism, set, [&](int i, int contact, const PairWrenches<S>& change) {
+      stage.contacts(), applied, [&](int i, int contact, const PairWrenches<S>& change) {
         grad[i] += scale * stage.contacts().weigh(pullback.twists(), contact, change);
       });
 }
@@ -184,12 +156,11 @@ void body_frame_column(const StageResidual<S>& stage, int link, const Vector6<S>
 
 /// Columns of one block, but for what contact parameters do to wrenches.
 template <Scalar S>
-void block_columns(const Mechanism<S>& mechanism, const ParameterSet& set, const VectorView<S>& p,
-                   const StageResidual<S>& stage, const ParameterBlock& block, double c,
-                   Eigen::Ref<MatrixX<S>> columns) {
+void block_columns(const Applied<S>& applied, const StageResidual<S>& stage,
+                   const ParameterBlock& block, double c, Eigen::Ref<MatrixX<S>> columns) {
   const Model& model = stage.model();
   const Motion<S>& motion = stage.motion();
-  const JointForces<S>& forces = stage.joint_forces();
+  const ParameterKindRow& kind = row_of(block.kind);
   const std::vector<int> rows = parameter_rows(model, block);
   const auto each = [&](const auto& fill) {
     for (int i = block.first; i < block.first + block.size; ++i) {
@@ -200,42 +171,40 @@ void block_columns(const Mechanism<S>& mechanism, const ParameterSet& set, const
       }
     }
   };
-  switch (block.kind) {
-    case ParameterKind::kJointTransform: {
-      const auto twists = frame_twists<S>(model, mechanism, motion, set, block, p);
+  switch (kind.effect) {
+    case ParameterEffect::kJointFrame: {
+      const auto twists = frame_twists<S>(model, applied, motion, block);
       const int first = first_node_of_link(model, block.owner);
       each([&](int i, auto& column) {
-        joint_frame_column<S>(stage, first, twists(set[i].component), rows, column);
+        joint_frame_column<S>(stage, first, twists(applied.set[i].component), rows, column);
       });
       break;
     }
-    case ParameterKind::kBodyTransform: {
-      const auto twists = frame_twists<S>(model, mechanism, motion, set, block, p);
+    case ParameterEffect::kBodyFrame: {
+      const auto twists = frame_twists<S>(model, applied, motion, block);
       each([&](int i, auto& column) {
-        body_frame_column<S>(stage, block.owner, twists(set[i].component), rows, column);
+        body_frame_column<S>(stage, block.owner, twists(applied.set[i].component), rows, column);
       });
       break;
     }
-    case ParameterKind::kMass:
-    case ParameterKind::kInertia:
-    case ParameterKind::kSize: {
-      const auto wrenches = inertia_wrenches<S>(model, mechanism, motion, block.owner);
+    case ParameterEffect::kInertia: {
+      const auto wrenches = inertia_wrenches<S>(model, applied.mechanism, motion, block.owner);
       each([&](int i, auto& column) {
-        const Vector6<S> wrench =
-            inertial_wrench<S>(model, mechanism, wrenches, block, set[i].component, p[i]);
+        const InertiaRate<S> rate = kind.actions<S>().inertia_rate(
+            model, applied.mechanism, block.owner, {applied.set[i].component, applied.p[i]});
+        Vector6<S> wrench = rate.mass * wrenches.by_mass;
+        for (std::size_t k = 0; k < 3; ++k) {
+          wrench += rate.moments[static_cast<Eigen::Index>(k)] * wrenches.by_moment[k];
+        }
         path_column<S>(stage, block.owner, wrench, rows, column);
       });
       break;
     }
-    case ParameterKind::kContactPoint:
-    case ParameterKind::kContactScale:
-    case ParameterKind::kContactCoefficient:
+    case ParameterEffect::kContact:
       each([&](int, auto& column) { column(rows).setZero(); });
       break;
-    case ParameterKind::kStiffness:
-    case ParameterKind::kDamping: {
-      const VectorX<S>& by =
-          block.kind == ParameterKind::kStiffness ? forces.by_stiffness : forces.by_damping;
+    case ParameterEffect::kJointForce: {
+      const VectorX<S>& by = stage.joint_forces().*(kind.actions<S>().force_by);
       each([&](int, auto& column) {
         for (const int l : rows) {
           column[l] = -by[l];
@@ -243,18 +212,17 @@ void block_columns(const Mechanism<S>& mechanism, const ParameterSet& set, const
       });
       break;
     }
-    case ParameterKind::kMotorP:
-    case ParameterKind::kMotorD: {
-      const VectorX<S>& by = block.kind == ParameterKind::kMotorP ? forces.by_P : forces.by_D;
+    case ParameterEffect::kMotorForce: {
+      const VectorX<S>& by = stage.joint_forces().*(kind.actions<S>().force_by);
       each([&](int, auto& column) {
         for_each_drive(model, block.owner, [&](int k, int i) { column[k] = -by[i]; });
       });
       break;
     }
-    case ParameterKind::kGravity:
+    case ParameterEffect::kGravity:
       each([&](int i, auto& column) {
         for (const int l : rows) {
-          column[l] = -stage.dynamics().IJ(3 + set[i].component, l);
+          column[l] = -stage.dynamics().IJ(3 + applied.set[i].component, l);
         }
       });
       break;
@@ -264,30 +232,26 @@ void block_columns(const Mechanism<S>& mechanism, const ParameterSet& set, const
 }  // namespace
 
 template <Scalar S>
-void parameter_columns(const Mechanism<S>& mechanism, const ParameterSet& set,
-                       const VectorView<S>& p, const StageResidual<S>& stage,
+void parameter_columns(const Applied<S>& applied, const StageResidual<S>& stage,
                        const StagePoint<S>& point, Eigen::Ref<MatrixX<S>> columns) {
   const double c = point.c();
-  for (const ParameterBlock& block : set.blocks()) {
-    block_columns<S>(mechanism, set, p, stage, block, c, columns);
+  for (const ParameterBlock& block : applied.set.blocks()) {
+    block_columns<S>(applied, stage, block, c, columns);
   }
   for_each_contact_change(
-      stage.contacts(), mechanism, set, [&](int i, int contact, const PairWrenches<S>& change) {
+      stage.contacts(), applied, [&](int i, int contact, const PairWrenches<S>& change) {
         stage.contacts().add_change(stage.motion(), contact, {c * change.on_a, c * change.on_b},
                                     columns.col(i));
       });
 }
 
-template void add_parameter_gradient(const Mechanism<double>&, const ParameterSet&,
-                                     const VectorView<double>&, const StageResidual<double>&,
+template void add_parameter_gradient(const Applied<double>&, const StageResidual<double>&,
                                      const StagePoint<double>&, const VectorView<double>&, double,
                                      Eigen::Ref<VectorX<double>>);
-template void add_parameter_gradient(const Mechanism<Dual>&, const ParameterSet&,
-                                     const VectorView<Dual>&, const StageResidual<Dual>&,
+template void add_parameter_gradient(const Applied<Dual>&, const StageResidual<Dual>&,
                                      const StagePoint<Dual>&, const VectorView<Dual>&, double,
                                      Eigen::Ref<VectorX<Dual>>);
-template void parameter_columns(const Mechanism<double>&, const ParameterSet&,
-                                const VectorView<double>&, const StageResidual<double>&,
+template void parameter_columns(const Applied<double>&, const StageResidual<double>&,
                                 const StagePoint<double>&, Eigen::Ref<MatrixX<double>>);
 
 }  // namespace hbar

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "hbar/adjoint/stage/stage_residual.h"
-#include "hbar/core/parameters/parameters.h"
+#include "hbar/core/parameters/applied.h"
 #include "hbar/core/parameters/sparsity.h"
 
 namespace hbar {
@@ -12,8 +12,7 @@ namespace hbar {
 /// @param point  where the stage was linearised
 /// @param z      what was pulled back                                            [dof]
 template <Scalar S>
-void add_parameter_gradient(const Mechanism<S>& mechanism, const ParameterSet& set,
-                            const VectorView<S>& p, const StageResidual<S>& stage,
+void add_parameter_gradient(const Applied<S>& applied, const StageResidual<S>& stage,
                             const StagePoint<S>& point, const VectorView<S>& z, double factor,
                             Eigen::Ref<VectorX<S>> grad);
 
@@ -22,8 +21,7 @@ void add_parameter_gradient(const Mechanism<S>& mechanism, const ParameterSet& s
 ///
 /// @param columns                                                     [dof x set.size()]
 template <Scalar S>
-void parameter_columns(const Mechanism<S>& mechanism, const ParameterSet& set,
-                       const VectorView<S>& p, const StageResidual<S>& stage,
+void parameter_columns(const Applied<S>& applied, const StageResidual<S>& stage,
                        const StagePoint<S>& point, Eigen::Ref<MatrixX<S>> columns);
 
 }  // namespace hbar

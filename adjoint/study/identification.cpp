@@ -102,10 +102,6 @@ Eigen::RowVectorXd place_sensitivity(const TrajectoryValues& values, const Tange
       return tangent_row(tangents.q, rows, place);
     case ValueField::kQdot:
       return tangent_row(tangents.qdot, rows, place);
-    case ValueField::kV:
-      return tangent_row(tangents.v, rows, place);
-    case ValueField::kTactile:
-      return tangent_row(tangents.tactile, rows, place);
     case ValueField::kMeasured:
       return tangent_row(tangents.measured, rows, place);
     case ValueField::kU:

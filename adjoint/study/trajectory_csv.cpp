@@ -20,8 +20,6 @@ struct NamedField {
 constexpr std::array kNamedFields = {
     NamedField{ValueField::kQ, &TrajectoryNames::q, "q."},
     NamedField{ValueField::kQdot, &TrajectoryNames::qdot, "qdot."},
-    NamedField{ValueField::kV, &TrajectoryNames::v, nullptr},
-    NamedField{ValueField::kTactile, &TrajectoryNames::tactile, nullptr},
     NamedField{ValueField::kMeasured, &TrajectoryNames::measured, nullptr},
     NamedField{ValueField::kU, &TrajectoryNames::u, nullptr},
 };
@@ -30,10 +28,6 @@ const Eigen::MatrixXd& member(const TrajectoryValues& values, ValueField field) 
   switch (field) {
     case ValueField::kQdot:
       return values.qdot;
-    case ValueField::kV:
-      return values.v;
-    case ValueField::kTactile:
-      return values.tactile;
     case ValueField::kMeasured:
       return values.measured;
     case ValueField::kU:
@@ -124,16 +118,6 @@ TrajectoryNames trajectory_names(const Horizon& horizon) {
   for (int i = 0; i < model.dof(); ++i) {
     names.q.push_back(model.coordinate_name(i));
     names.qdot.push_back("rate." + names.q.back());
-  }
-  for (const EndEffector& point : model.end_effectors()) {
-    for (const char* axis : {".x", ".y", ".z"}) names.v.push_back(point.name + axis);
-  }
-  for (const TactileSensor& sensor : model.tactile_sensors()) {
-    for (Eigen::Index i = 0; i < sensor.points.cols(); ++i) {
-      for (const char* reading : {".shear0", ".shear1", ".normal"}) {
-        names.tactile.push_back(concat(sensor.name, '.', i, reading));
-      }
-    }
   }
   names.measured = horizon.measured_names();
   for (int i = 0; i < model.control_count(); ++i) {

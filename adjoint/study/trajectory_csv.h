@@ -14,8 +14,6 @@ namespace hbar::study {
 struct TrajectoryNames {
   std::vector<std::string> q;         ///< "NAME" of each coordinate                 [dof]
   std::vector<std::string> qdot;      ///< "rate.NAME"                               [dof]
-  std::vector<std::string> v;         ///< "NAME.x", … of each end effector          [variables]
-  std::vector<std::string> tactile;   ///< "SENSOR.POINT.shear0", …                  [readings]
   std::vector<std::string> measured;  ///< Horizon::measured_names                  [measured]
   std::vector<std::string> u;         ///< "control.NAME"                            [controls]
 };
@@ -23,8 +21,9 @@ struct TrajectoryNames {
 /// The names of all numbers of a simulation.
 [[nodiscard]] TrajectoryNames trajectory_names(const Horizon& horizon);
 
-/// A table with a row per step k = 0 … N: time, coordinates, rates, end effectors, sensor readings,
-/// measured rows, and the controls that acted until then (none at k = 0).
+/// A table with a row per step k = 0 … N: time, coordinates, rates,
+/// measured rows (end effectors and sensor readings first), and the controls that acted until then
+/// (none at k = 0).
 ///
 /// @throws InvalidInput if a member has another number of rows than names
 [[nodiscard]] std::string trajectory_csv(const TrajectoryNames& names,

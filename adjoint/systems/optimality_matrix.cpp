@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hbar/adjoint/outputs/end_effectors.h"
+#include "hbar/adjoint/outputs/measurements.h"
 #include "hbar/adjoint/trajectory/horizon.h"
 #include "hbar/adjoint/trajectory/trajectory.h"
 #include "hbar/core/base/error.h"
@@ -93,18 +93,31 @@ SparseMatrix followed_by_q(const Horizon& horizon, const Trajectory& trajectory)
     identity.setIdentity();
     return identity;
   }
-  const Mechanism<double>& mechanism = *trajectory.mechanism;
-  Motion<double> motion(model.tree());
-  const EndEffectors<double> end_effectors(model);
+  // E's row is the gradient of one variable.
+  std::vector<Measurement> followed = model_measurements(model);
+  followed.resize(model.end_effectors().size());  // which come first
+  Measurements<double> measurements(model, followed);
+  InstantMotion<double> instants(model, measurements.reads_contacts());
+  const Applied<double> applied{*trajectory.mechanism, horizon.parameters(), trajectory.inputs.p};
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
-  Eigen::MatrixXd dv_dq(variables, n);
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(measurements.size());
+  Eigen::VectorXd by_q(n), by_qdot(n), by_u(model.control_count()), by_p(applied.set.size());
   std::vector<Eigen::Triplet<double>> entries;
   for (int s = 1; s <= stages; ++s) {
-    compute_motion<double>(model.tree(), mechanism, trajectory.q.col(s), none, none, motion);
-    end_effectors.jacobian(motion, dv_dq);
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < variables; ++i) {
-        entries.emplace_back((s - 1) * variables + i, (s - 1) * n + j, dv_dq(i, j));
+    const Instant<double> at =
+        instants.at(applied, trajectory.q.col(s), none, trajectory.inputs.u.col(0));
+    measurements.linearize(at);
+    for (int i = 0; i < variables; ++i) {
+      by_q.setZero();
+      by_qdot.setZero();
+      by_u.setZero();
+      by_p.setZero();
+      InstantGradient<double> by{by_q, by_qdot, by_u, by_p};
+      weight[i] = 1.0;
+      measurements.pull_back(at, weight, by);
+      weight[i] = 0.0;
+      for (int j = 0; j < n; ++j) {
+        entries.emplace_back((s - 1) * variables + i, (s - 1) * n + j, by_q[j]);
       }
     }
   }

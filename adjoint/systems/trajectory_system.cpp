@@ -7,6 +7,7 @@
 #include "hbar/adjoint/derivatives/factorized_linearization.h"
 #include "hbar/adjoint/systems/optimality_matrix.h"
 #include "hbar/adjoint/systems/periodic_matrix.h"
+#include "hbar/adjoint/trajectory/trajectory.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {

@@ -213,11 +213,10 @@ class TermChecker {
 
 /// All partials in the order of all_places.
 VectorXd flat(const TrajectoryPartials& partials) {
-  VectorXd out(partials.q.size() + partials.qdot.size() + partials.v.size() +
-               partials.tactile.size() + partials.measured.size() + partials.u.size() +
-               partials.p.size());
-  out << partials.q.reshaped(), partials.qdot.reshaped(), partials.v.reshaped(),
-      partials.tactile.reshaped(), partials.measured.reshaped(), partials.u.reshaped(), partials.p;
+  VectorXd out(partials.q.size() + partials.qdot.size() + partials.measured.size() +
+               partials.u.size() + partials.p.size());
+  out << partials.q.reshaped(), partials.qdot.reshaped(), partials.measured.reshaped(),
+      partials.u.reshaped(), partials.p;
   return out;
 }
 

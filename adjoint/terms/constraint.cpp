@@ -148,7 +148,7 @@ ConstraintPointer variable_at_step(const Model& model, const std::string& end_ef
   for (int k = 0; k < 3; ++k) {
     names.push_back(
         concat(end_effector, ".", kAxes[static_cast<std::size_t>(k)], " at step ", step));
-    places.push_back({k, PartialPlace::Field::kV, step, first + k});
+    places.push_back({k, PartialPlace::Field::kMeasured, step, first + k});
     lower.push_back(target[k] - half_width);
     upper.push_back(target[k] + half_width);
   }

@@ -103,7 +103,7 @@ ConstraintPointer variable_limits(const Model& model, const std::string& end_eff
   for (const int step : steps) {
     for (int axis = 0; axis < 3; ++axis) {
       rows.add(concat(end_effector, kAxisNames[static_cast<std::size_t>(axis)], step), lower[axis],
-               upper[axis], {{{ValueField::kV, step, first + axis}, 1.0}});
+               upper[axis], {{{ValueField::kMeasured, step, first + axis}, 1.0}});
     }
   }
   return rows.build();

@@ -5,11 +5,10 @@
 namespace hbar {
 
 TrajectoryPartials::TrajectoryPartials(const TrajectoryValues& shape)
-    : q(Eigen::MatrixXd::Zero(shape.q.rows(), shape.q.cols())),
+    : Measured{Eigen::MatrixXd::Zero(shape.measured.rows(), shape.measured.cols()),
+               shape.measured_rows},
+      q(Eigen::MatrixXd::Zero(shape.q.rows(), shape.q.cols())),
       qdot(Eigen::MatrixXd::Zero(shape.qdot.rows(), shape.qdot.cols())),
-      v(Eigen::MatrixXd::Zero(shape.v.rows(), shape.v.cols())),
-      tactile(Eigen::MatrixXd::Zero(shape.tactile.rows(), shape.tactile.cols())),
-      measured(Eigen::MatrixXd::Zero(shape.measured.rows(), shape.measured.cols())),
       u(Eigen::MatrixXd::Zero(shape.u.rows(), shape.u.cols())),
       p(Eigen::VectorXd::Zero(shape.p.size())) {}
 
@@ -40,9 +39,8 @@ TrajectoryPartials Objective::partials(const TrajectoryValues& values) const {
   TrajectoryPartials sum(values);
   for (const auto& term : terms_) {
     term->add_partials(values, sum);
-    if (!sum.q.allFinite() || !sum.qdot.allFinite() || !sum.v.allFinite() ||
-        !sum.tactile.allFinite() || !sum.measured.allFinite() || !sum.u.allFinite() ||
-        !sum.p.allFinite()) {
+    if (!sum.q.allFinite() || !sum.qdot.allFinite() || !sum.measured.allFinite() ||
+        !sum.u.allFinite() || !sum.p.allFinite()) {
       throw NumericalFailure(
           concat("objective term '", term->name(), "' gave a partial that is not finite"));
     }

@@ -10,18 +10,15 @@
 
 namespace hbar {
 
-/// Partial derivatives ∂Ψ/∂(q̄, q̇̄, v̄, tactile, measured, u, p) at fixed others, shaped like
+/// Partial derivatives ∂Ψ/∂(q̄, q̇̄, measured, u, p) at fixed others, shaped like
 /// TrajectoryValues.
-struct TrajectoryPartials {
+struct TrajectoryPartials : Measured {
   explicit TrajectoryPartials(const TrajectoryValues& shape);
 
-  Eigen::MatrixXd q;         ///<                                             [dof x N+1]
-  Eigen::MatrixXd qdot;      ///<                                             [dof x N+1]
-  Eigen::MatrixXd v;         ///<                                             [variables x N+1]
-  Eigen::MatrixXd tactile;   ///<                                         [readings x N+1]
-  Eigen::MatrixXd measured;  ///<                                         [measured x N+1]
-  Eigen::MatrixXd u;         ///<                                             [controls x N]
-  Eigen::VectorXd p;         ///<                                             [parameters]
+  Eigen::MatrixXd q;     ///<                                             [dof x N+1]
+  Eigen::MatrixXd qdot;  ///<                                             [dof x N+1]
+  Eigen::MatrixXd u;     ///<                                             [controls x N]
+  Eigen::VectorXd p;     ///<                                             [parameters]
 };
 
 /// One summand of an objective Ψ(p, q̄, v̄) (15).

@@ -193,20 +193,26 @@ TermPointer user_term(std::string name, Value value, AddPartials add_partials,
 }
 
 TermPointer squared_variables(double weight, const StepWeights& steps) {
-  return half_squares("squared_variables",
-                      {{.field = ValueField::kV, .weight = weight, .steps = steps}});
+  return half_squares("squared_variables", {{.field = ValueField::kMeasured,
+                                             .choice = RowChoice::kVariables,
+                                             .weight = weight,
+                                             .steps = steps}});
 }
 
 TermPointer squared_tactile(double weight, const StepWeights& steps) {
-  return half_squares("squared_tactile",
-                      {{.field = ValueField::kTactile, .weight = weight, .steps = steps}});
+  return half_squares("squared_tactile", {{.field = ValueField::kMeasured,
+                                           .choice = RowChoice::kTactile,
+                                           .weight = weight,
+                                           .steps = steps}});
 }
 
 TermPointer squared_measured(double weight, const std::vector<int>& rows,
                              const StepWeights& steps) {
-  return half_squares(
-      "squared_measured",
-      {{.field = ValueField::kMeasured, .rows = rows, .weight = weight, .steps = steps}});
+  return half_squares("squared_measured", {{.field = ValueField::kMeasured,
+                                            .rows = rows,
+                                            .choice = RowChoice::kDeclared,
+                                            .weight = weight,
+                                            .steps = steps}});
 }
 
 TermPointer squared_final_position(double weight) {
@@ -221,15 +227,18 @@ TermPointer tracking(Eigen::MatrixXd target, double weight, const StepWeights& s
 }
 
 TermPointer variable_tracking(Eigen::MatrixXd target, double weight, const StepWeights& steps) {
-  return half_squares(
-      "variable_tracking",
-      {{.field = ValueField::kV, .target = std::move(target), .weight = weight, .steps = steps}});
+  return half_squares("variable_tracking", {{.field = ValueField::kMeasured,
+                                             .choice = RowChoice::kVariables,
+                                             .target = std::move(target),
+                                             .weight = weight,
+                                             .steps = steps}});
 }
 
 TermPointer measured_tracking(const std::vector<int>& rows, Eigen::MatrixXd target, double weight,
                               const StepWeights& steps) {
   return half_squares("measured_tracking", {{.field = ValueField::kMeasured,
                                              .rows = rows,
+                                             .choice = RowChoice::kDeclared,
                                              .target = std::move(target),
                                              .weight = weight,
                                              .steps = steps}});

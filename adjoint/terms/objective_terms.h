@@ -13,9 +13,9 @@ namespace hbar {
 /// ½ weight Σ_{k=1…N} ‖tactile_k‖² over all sensor readings.
 [[nodiscard]] TermPointer squared_tactile(double weight = 1.0, const StepWeights& steps = {});
 
-/// ½ weight Σ_{k=1…N} ‖measured_k‖² over the measured rows.
+/// ½ weight Σ_{k=1…N} ‖measured_k‖² over measured rows.
 ///
-/// @param rows  of the measurements; empty: all
+/// @param rows  Horizon::measured_index; empty: those of SimulationOptions::measurements
 [[nodiscard]] TermPointer squared_measured(double weight = 1.0, const std::vector<int>& rows = {},
                                            const StepWeights& steps = {});
 
@@ -36,7 +36,7 @@ namespace hbar {
 
 /// ½ weight Σ_{k=1…N} ‖measured_k − target_k‖² on the measured rows.
 ///
-/// @param rows    of the measurements; empty: all
+/// @param rows    Horizon::measured_index; empty: those of SimulationOptions::measurements
 /// @param target  column k − 1 is step k's target, or one column for all     [rows x N or 1]
 [[nodiscard]] TermPointer measured_tracking(const std::vector<int>& rows, Eigen::MatrixXd target,
                                             double weight = 1.0, const StepWeights& steps = {});
@@ -69,7 +69,7 @@ namespace hbar {
 /// weight h Σ_{k=1…N} Σ_rows (√(P² + ε²) − ε) over measured powers P: the work that motors which
 /// give nothing back must do. ε rounds the corner of |P| off; what P = 0 costs is taken off again.
 ///
-/// @param rows       of the measurements
+/// @param rows       Horizon::measured_index
 /// @param smoothing  ε > 0, power: a small share of the powers that matter
 [[nodiscard]] TermPointer work(const std::vector<int>& rows, double smoothing, double weight = 1.0,
                                const StepWeights& steps = {});

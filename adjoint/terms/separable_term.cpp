@@ -1,6 +1,7 @@
 #include "hbar/adjoint/terms/separable_term.h"
 
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -38,27 +39,54 @@ void check_shapes(const std::string& name, const StepSum& sum, const TrajectoryV
   }
 }
 
+/// The rows that a sum takes.
+std::vector<int> rows_of(const StepSum& sum, const TrajectoryValues& values) {
+  if (!sum.rows.empty()) {
+    return sum.rows;
+  }
+  const MeasuredRows& measured = values.measured_rows;
+  Eigen::Index first = 0;
+  Eigen::Index count = field_rows(values, sum.field);
+  switch (sum.choice) {
+    case RowChoice::kAll:
+      break;
+    case RowChoice::kVariables:
+      count = measured.variables;
+      break;
+    case RowChoice::kTactile:
+      first = measured.variables;
+      count = measured.tactile;
+      break;
+    case RowChoice::kDeclared:
+      first = measured.variables + measured.tactile;
+      count = values.declared_count();
+      break;
+  }
+  std::vector<int> rows(static_cast<std::size_t>(count));
+  std::iota(rows.begin(), rows.end(), static_cast<int>(first));
+  return rows;
+}
+
 /// Adds the numbers of a sum that count.
 void add_summands(const std::string& name, const StepSum& sum, const TrajectoryValues& values,
                   std::vector<Summand>& out) {
-  const Eigen::Index rows =
-      sum.rows.empty() ? field_rows(values, sum.field) : static_cast<Eigen::Index>(sum.rows.size());
+  const std::vector<int> rows = rows_of(sum, values);
   const auto last = static_cast<int>(field_columns(values, sum.field)) - 1;
   // What happens at k = 0 is given, not caused; the controls of step 1 are u_0.
   const int first = sum.final_only ? last : (sum.field == ValueField::kU ? 0 : 1);
-  check_shapes(name, sum, values, rows, last - first + 1);
+  check_shapes(name, sum, values, static_cast<Eigen::Index>(rows.size()), last - first + 1);
   const double h = sum.times_h ? values.h : 1.0;
   for (int column = first; column <= last; ++column) {
     const double weight = sum.weight * sum.steps.of(column - first + 1);
     if (weight == 0.0) {
       continue;
     }
-    for (Eigen::Index r = 0; r < rows; ++r) {
-      const int row =
-          sum.rows.empty() ? static_cast<int>(r) : sum.rows[static_cast<std::size_t>(r)];
-      const double target =
-          sum.target.size() == 0 ? 0.0 : sum.target(r, sum.target.cols() == 1 ? 0 : column - first);
-      out.push_back({{sum.field, column, row}, weight * h, target});
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const double target = sum.target.size() == 0
+                                ? 0.0
+                                : sum.target(static_cast<Eigen::Index>(r),
+                                             sum.target.cols() == 1 ? 0 : column - first);
+      out.push_back({{sum.field, column, rows[r]}, weight * h, target});
     }
   }
 }

@@ -30,11 +30,20 @@ struct StepWeights {
   void check(const std::string& term) const;
 };
 
+/// Which rows of a member a sum without a list of its own takes.
+enum class RowChoice {
+  kAll,
+  kVariables,  ///< of kMeasured: those of the end effectors
+  kTactile,    ///< of kMeasured: those of the tactile sensors
+  kDeclared    ///< of kMeasured: those of SimulationOptions::measurements
+};
+
 /// Which numbers a term adds up, and how much each counts.
 struct StepSum {
   ValueField field = ValueField::kQ;  ///< a member with steps: not kP
-  std::vector<int> rows = {};         ///< of the member; empty: all
-  Eigen::MatrixXd target = {};        ///< empty: zeros                        [rows x N or 1]
+  std::vector<int> rows = {};         ///< of the member; empty: as `choice` says
+  RowChoice choice = RowChoice::kAll;
+  Eigen::MatrixXd target = {};  ///< empty: zeros                        [rows x N or 1]
   double weight = 1.0;
   StepWeights steps = {};
   bool final_only = false;  ///< the last column alone instead of steps 1 … N

@@ -3,15 +3,13 @@
 #include <array>
 #include <type_traits>
 
-#include "hbar/adjoint/trajectory/horizon.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {
 namespace {
 
-constexpr std::array kEveryField = {ValueField::kQ,       ValueField::kQdot,     ValueField::kV,
-                                    ValueField::kTactile, ValueField::kMeasured, ValueField::kU,
-                                    ValueField::kP};
+constexpr std::array kEveryField = {ValueField::kQ, ValueField::kQdot, ValueField::kMeasured,
+                                    ValueField::kU, ValueField::kP};
 
 /// A member's numbers, column by column.
 template <typename Number>
@@ -31,10 +29,6 @@ auto member_of(Members& members, ValueField field) {
       return view(members.q);
     case ValueField::kQdot:
       return view(members.qdot);
-    case ValueField::kV:
-      return view(members.v);
-    case ValueField::kTactile:
-      return view(members.tactile);
     case ValueField::kMeasured:
       return view(members.measured);
     case ValueField::kU:
@@ -59,8 +53,7 @@ auto& number_in(Members& members, const ValuePlace& place) {
 }  // namespace
 
 std::string_view field_name(ValueField field) {
-  constexpr std::array<std::string_view, 7> kNames = {"q",        "qdot", "v", "tactile",
-                                                      "measured", "u",    "p"};
+  constexpr std::array<std::string_view, 5> kNames = {"q", "qdot", "measured", "u", "p"};
   return kNames[static_cast<std::size_t>(field)];
 }
 
@@ -101,21 +94,6 @@ std::vector<ValuePlace> all_places(const TrajectoryValues& shape) {
       }
     }
   }
-  return out;
-}
-
-TrajectoryValues value_shape(const Horizon& horizon) {
-  const Model& model = horizon.model();
-  const int steps = horizon.options().steps;
-  TrajectoryValues out;
-  out.h = horizon.options().h;
-  out.q.setZero(model.dof(), steps + 1);
-  out.qdot.setZero(model.dof(), steps + 1);
-  out.v.setZero(model.variable_count(), steps + 1);
-  out.tactile.setZero(model.tactile_count(), steps + 1);
-  out.measured.setZero(horizon.measured_count(), steps + 1);
-  out.u.setZero(model.control_count(), steps);
-  out.p.setZero(horizon.parameters().size());
   return out;
 }
 

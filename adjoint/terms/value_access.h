@@ -9,12 +9,10 @@
 
 namespace hbar {
 
-class Horizon;
-
 /// How TrajectoryValues move along one direction; shaped like them. `h` is 0.
 using ValueTangent = TrajectoryValues;
 
-/// The member's name: "q", "qdot", "v", "tactile", "measured", "u", "p".
+/// The member's name: "q", "qdot", "measured", "u", "p".
 [[nodiscard]] std::string_view field_name(ValueField field);
 
 /// The place in words: "qdot 3 at step 7", "p 2".
@@ -33,9 +31,6 @@ using ValueTangent = TrajectoryValues;
 /// The partial by the number at a place, to be written.
 /// @throws InvalidInput naming the place if the partials have none there
 [[nodiscard]] double& partial_at(TrajectoryPartials& partials, const ValuePlace& place);
-
-/// Values of a horizon's trajectories, sized but zero: what terms ask for before there are any.
-[[nodiscard]] TrajectoryValues value_shape(const Horizon& horizon);
 
 /// How partials move along a tangent of the values: adds second_i · (δb at a, δa at b) for each
 /// place.

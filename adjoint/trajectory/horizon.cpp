@@ -67,11 +67,17 @@ Horizon::Horizon(std::shared_ptr<const Model> model, ParameterSet parameters,
   Data data{.model = std::move(model),
             .parameters = std::move(parameters),
             .options = std::move(options),
+            .measurements = {},
+            .measured_rows = {},
             .measured_names = {}};
   data.integrator = &find_integrator(data.options.integrator);
   check_options(*data.model, data.options);
   check_measurements(*data.model, data.options.measurements);
-  for (const Measurement& measurement : data.options.measurements) {
+  data.measurements = model_measurements(*data.model);
+  data.measured_rows = {data.model->variable_count(), data.model->tactile_count()};
+  data.measurements.insert(data.measurements.end(), data.options.measurements.begin(),
+                           data.options.measurements.end());
+  for (const Measurement& measurement : data.measurements) {
     const std::vector<std::string> rows = row_names(*data.model, measurement);
     data.measured_names.insert(data.measured_names.end(), rows.begin(), rows.end());
   }

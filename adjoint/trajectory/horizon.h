@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hbar/adjoint/trajectory/inputs.h"
+#include "hbar/adjoint/trajectory/trajectory_values.h"
 #include "hbar/core/model/measurement.h"
 #include "hbar/core/parameters/parameters.h"
 #include "hbar/solvers/newton/newton.h"
@@ -24,7 +25,7 @@ struct SimulationOptions {
   /// then takes a step of SDIRK2 there.
   std::vector<int> restarts = {};
   solvers::NewtonOptions newton = {};
-  /// Rows of TrajectoryValues::measured, for objectives and constraints to read.
+  /// Further rows of TrajectoryValues::measured, for objectives and constraints to read.
   std::vector<Measurement> measurements = {};
   int max_halvings = 10;                    ///< of a step that does not converge; each is recorded
   bool keep_factors = true;                 ///< for the adjoint; dropped if they exceed max_memory
@@ -68,7 +69,11 @@ class Horizon {
   /// @throws InvalidInput naming the first input that has another shape or is not finite
   void check(const Inputs& inputs) const;
 
-  /// Names of the rows of TrajectoryValues::measured: "NAME" or "NAME.x", … of each measurement.
+  /// All that is measured: model_measurements, then SimulationOptions::measurements.
+  [[nodiscard]] const std::vector<Measurement>& measurements() const { return data_->measurements; }
+  /// Whose the rows of TrajectoryValues::measured are.
+  [[nodiscard]] const MeasuredRows& measured_rows() const { return data_->measured_rows; }
+  /// Their names: "NAME" or "NAME.x", … of each measurement.
   [[nodiscard]] const std::vector<std::string>& measured_names() const {
     return data_->measured_names;
   }
@@ -84,6 +89,8 @@ class Horizon {
     SimulationOptions options;
     const Integrator* integrator = nullptr;
     bool keeps_factors = true;
+    std::vector<Measurement> measurements;
+    MeasuredRows measured_rows;
     std::vector<std::string> measured_names;
   };
 

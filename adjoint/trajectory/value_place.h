@@ -3,7 +3,7 @@
 namespace hbar {
 
 /// Members of TrajectoryValues whose numbers terms read.
-enum class ValueField { kQ, kQdot, kV, kTactile, kMeasured, kU, kP };
+enum class ValueField { kQ, kQdot, kMeasured, kU, kP };
 
 /// One number of TrajectoryValues.
 struct ValuePlace {

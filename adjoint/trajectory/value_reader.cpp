@@ -6,35 +6,31 @@ namespace hbar {
 
 ValueReader::ValueReader(Horizon horizon)
     : horizon_(std::move(horizon)),
+      measurements_(horizon_.model(), horizon_.measurements()),
+      instants_(horizon_.model(), measurements_.reads_contacts()),
       motion_(horizon_.model().tree()),
-      outputs_(horizon_.model(), horizon_.options().measurements),
-      rows_(outputs_.zero_rows()),
       contacts_(horizon_.model()),
       none_(Eigen::VectorXd::Zero(horizon_.model().dof())) {}
 
 TrajectoryValues ValueReader::values(const Trajectory& trajectory) {
-  const Model& model = horizon_.model();
   const int steps = trajectory.step_count();
   TrajectoryValues out;
   out.h = horizon_.options().h;
-  out.q.resize(model.dof(), steps + 1);
-  out.qdot.resize(model.dof(), steps + 1);
-  out.v.resize(model.variable_count(), steps + 1);
-  out.tactile.resize(model.tactile_count(), steps + 1);
-  out.measured.resize(rows_.measured.size(), steps + 1);
+  out.q.resize(horizon_.model().dof(), steps + 1);
+  out.qdot.resize(horizon_.model().dof(), steps + 1);
+  out.measured.resize(measurements_.size(), steps + 1);
+  out.measured_rows = horizon_.measured_rows();
   out.u = trajectory.inputs.u.leftCols(steps);
   out.p = trajectory.inputs.p;
+  const Applied<double> applied{*trajectory.mechanism, horizon_.parameters(), trajectory.inputs.p};
   for (int k = 0; k <= steps; ++k) {
     out.q.col(k) = trajectory.q_at_step(k);
     out.qdot.col(k) = trajectory.qdot_at_step(k);
-    if (!outputs_.empty()) {
-      outputs_.read(*trajectory.mechanism,
-                    outputs_.motion_at(*trajectory.mechanism, out.q.col(k), out.qdot.col(k)),
-                    out.q.col(k), out.qdot.col(k), trajectory.inputs.u.col(measured_step(k)),
-                    rows_);
-      out.v.col(k) = rows_.v;
-      out.tactile.col(k) = rows_.tactile;
-      out.measured.col(k) = rows_.measured;
+    if (!measurements_.empty()) {
+      const Instant<double> at = instants_.at(applied, out.q.col(k), out.qdot.col(k),
+                                              trajectory.inputs.u.col(measured_step(k)));
+      measurements_.linearize(at);
+      measurements_.read(at, out.measured.col(k));
     }
   }
   return out;
@@ -63,6 +59,19 @@ TrajectoryValues read_values(const Horizon& horizon, const Trajectory& trajector
 std::vector<std::vector<ContactSummary>> contact_history(const Horizon& horizon,
                                                          const Trajectory& trajectory) {
   return ValueReader(horizon).contact_history(trajectory);
+}
+
+TrajectoryValues value_shape(const Horizon& horizon) {
+  const int steps = horizon.steps();
+  TrajectoryValues out;
+  out.h = horizon.options().h;
+  out.q.setZero(horizon.model().dof(), steps + 1);
+  out.qdot.setZero(horizon.model().dof(), steps + 1);
+  out.measured.setZero(horizon.measured_count(), steps + 1);
+  out.measured_rows = horizon.measured_rows();
+  out.u.setZero(horizon.model().control_count(), steps);
+  out.p.setZero(horizon.parameters().size());
+  return out;
 }
 
 }  // namespace hbar

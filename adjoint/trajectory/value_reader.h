@@ -2,10 +2,9 @@
 
 #include <vector>
 
-#include "hbar/adjoint/outputs/instant_outputs.h"
+#include "hbar/adjoint/outputs/measurements.h"
 #include "hbar/adjoint/trajectory/horizon.h"
 #include "hbar/adjoint/trajectory/trajectory.h"
-#include "hbar/adjoint/trajectory/trajectory_values.h"
 
 namespace hbar {
 
@@ -26,9 +25,9 @@ class ValueReader {
 
  private:
   Horizon horizon_;
+  Measurements<double> measurements_;
+  InstantMotion<double> instants_;
   Motion<double> motion_;
-  InstantOutputs<double> outputs_;
-  OutputRows<double> rows_;
   ContactForces<double> contacts_;
   Eigen::VectorXd none_;  // accelerations, which nothing here reads
 };
@@ -39,5 +38,8 @@ class ValueReader {
 /// ValueReader::contact_history of one trajectory.
 [[nodiscard]] std::vector<std::vector<ContactSummary>> contact_history(
     const Horizon& horizon, const Trajectory& trajectory);
+
+/// What is measured of a trajectory, sized but zero: what terms ask for before there is one.
+[[nodiscard]] TrajectoryValues value_shape(const Horizon& horizon);
 
 }  // namespace hbar

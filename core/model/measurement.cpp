@@ -53,6 +53,12 @@ class MeasurementCheck {
   std::string operator()(const MotorPower& m) const { return motor(m.motor); }
   std::string operator()(const CentreOfMass&) const { return {}; }
   std::string operator()(const LinearMomentum&) const { return {}; }
+  std::string operator()(const EndEffectorPosition& m) const {
+    return index("end effector", m.end_effector, static_cast<int>(model_.end_effectors().size()));
+  }
+  std::string operator()(const TactileReading& m) const {
+    return index("sensor", m.sensor, static_cast<int>(model_.tactile_sensors().size()));
+  }
 
  private:
   static std::string first_of(std::string a, std::string b) { return a.empty() ? b : a; }
@@ -101,6 +107,17 @@ class MeasurementCheck {
 
 }  // namespace
 
+std::vector<Measurement> model_measurements(const Model& model) {
+  std::vector<Measurement> out;
+  for (std::size_t i = 0; i < model.end_effectors().size(); ++i) {
+    out.emplace_back(EndEffectorPosition{model.end_effectors()[i].name, static_cast<int>(i)});
+  }
+  for (std::size_t i = 0; i < model.tactile_sensors().size(); ++i) {
+    out.emplace_back(TactileReading{model.tactile_sensors()[i].name, static_cast<int>(i)});
+  }
+  return out;
+}
+
 std::vector<std::string> row_names(const Model& model, const Measurement& measurement) {
   const std::string name = name_of_measurement(measurement);
   if (std::holds_alternative<BodyDistance>(measurement) ||
@@ -115,6 +132,16 @@ std::vector<std::string> row_names(const Model& model, const Measurement& measur
     }
     return names;
   }
+  if (const auto* reading = std::get_if<TactileReading>(&measurement)) {
+    const auto& sensor = model.tactile_sensors()[static_cast<std::size_t>(reading->sensor)];
+    std::vector<std::string> names;
+    for (Eigen::Index i = 0; i < sensor.points.cols(); ++i) {
+      for (const char* row : {".shear0", ".shear1", ".normal"}) {
+        names.push_back(concat(name, '.', i, row));
+      }
+    }
+    return names;
+  }
   std::vector<std::string> names = {name + ".x", name + ".y", name + ".z"};
   if (std::holds_alternative<ContactForce>(measurement)) {
     names.insert(names.begin(), name + ".normal");
@@ -124,6 +151,10 @@ std::vector<std::string> row_names(const Model& model, const Measurement& measur
 
 void check_measurements(const Model& model, const std::vector<Measurement>& measurements) {
   std::set<std::string> taken;
+  for (const Measurement& own : model_measurements(model)) {
+    const std::vector<std::string> rows = row_names(model, own);
+    taken.insert(rows.begin(), rows.end());
+  }
   for (std::size_t i = 0; i < measurements.size(); ++i) {
     const std::string name = name_of_measurement(measurements[i]);
     if (name.empty()) {

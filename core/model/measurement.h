@@ -66,15 +66,35 @@ struct LinearMomentum {
   std::string name = {};
 };
 
-/// A function of one instant (q, q̇, u, p) that constraints and objectives read as numbers.
-using Measurement = std::variant<PointVelocity, Orientation, BodyDistance, ContactForce,
-                                 MotorTorque, MotorPower, CentreOfMass, LinearMomentum>;
+/// Position of an end effector of the model, in the world, length: three of the document's
+/// auxiliary variables v. Rows x, y, z.
+struct EndEffectorPosition {
+  std::string name = {};
+  int end_effector = 0;  ///< index
+};
 
-/// Names of a measurement's rows: its own, followed by ".x", … where there are several.
+/// What a tactile sensor of the model reads, force. Rows 0.shear0, 0.shear1, 0.normal, 1.shear0, …:
+/// of each point in order the contact force on it along its two shear directions, and against their
+/// cross product.
+struct TactileReading {
+  std::string name = {};
+  int sensor = 0;  ///< index
+};
+
+/// A function of one instant (q, q̇, u, p) that constraints and objectives read as numbers.
+using Measurement =
+    std::variant<PointVelocity, Orientation, BodyDistance, ContactForce, MotorTorque, MotorPower,
+                 CentreOfMass, LinearMomentum, EndEffectorPosition, TactileReading>;
+
+/// What a model measures by itself: every end effector, then every tactile sensor, under their own
+/// names.
+[[nodiscard]] std::vector<Measurement> model_measurements(const Model& model);
+
+/// Names of a measurement's rows: its own, followed by ".x" and the like where there are several.
 [[nodiscard]] std::vector<std::string> row_names(const Model& model,
                                                  const Measurement& measurement);
 
-/// Refuses measurements that a model cannot have.
+/// Refuses measurements that a model cannot have beside its own.
 ///
 /// @throws InvalidInput naming the measurement, what was found and what is allowed: an empty name
 ///         or one taken, an index that the model has not, a number that is not finite, a radius

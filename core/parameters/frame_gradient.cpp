@@ -5,13 +5,12 @@
 namespace hbar {
 
 template <Scalar S>
-FrameTwists<S> frame_twists(const Model& model, const Mechanism<S>& mechanism,
-                            const Motion<S>& motion, const ParameterSet& set,
-                            const ParameterBlock& block, const VectorView<S>& p) {
+FrameTwists<S> frame_twists(const Model& model, const Applied<S>& applied, const Motion<S>& motion,
+                            const ParameterBlock& block) {
   Vector3<S> w = Vector3<S>::Zero();
   for (int i = block.first; i < block.first + block.size; ++i) {
-    if (set[i].component < 3) {
-      w[set[i].component] = p[i];
+    if (applied.set[i].component < 3) {
+      w[applied.set[i].component] = applied.p[i];
     }
   }
   Matrix3<S> J_w;
@@ -22,20 +21,20 @@ FrameTwists<S> frame_twists(const Model& model, const Mechanism<S>& mechanism,
   }
   if (block.kind == ParameterKind::kJointTransform) {
     const Node& node = model.tree().node(first_node_of_link(model, block.owner));
-    return {rest_frame(model, mechanism, motion, block.owner), motion.parent_of(node).R, J_w};
+    return {rest_frame(model, applied.mechanism, motion, block.owner), motion.parent_of(node).R,
+            J_w};
   }
   const NodeMotion<S>& joint = motion.at(model.node_of_link(block.owner));
-  return {
-      RigidTransform<S>{joint.R, joint.p} * mechanism.X_JB[static_cast<std::size_t>(block.owner)],
-      joint.R, J_w};
+  return {RigidTransform<S>{joint.R, joint.p} *
+              applied.mechanism.X_JB[static_cast<std::size_t>(block.owner)],
+          joint.R, J_w};
 }
 
 template <Scalar S>
-void add_frame_gradient(const Model& model, const Mechanism<S>& mechanism, const Motion<S>& motion,
-                        const ParameterSet& set, const ParameterBlock& block,
-                        const VectorView<S>& p, const Vector6<S>& covector,
+void add_frame_gradient(const Model& model, const Applied<S>& applied, const Motion<S>& motion,
+                        const ParameterBlock& block, const Vector6<S>& covector,
                         Eigen::Ref<VectorX<S>> grad) {
-  const FrameTwists<S> twists = frame_twists<S>(model, mechanism, motion, set, block, p);
+  const FrameTwists<S> twists = frame_twists<S>(model, applied, motion, block);
   // The covector as torque about the frame's origin, on the axes that w is
   // measured in, and force.
   const Vector3<S> force = covector.template tail<3>();
@@ -43,23 +42,20 @@ void add_frame_gradient(const Model& model, const Mechanism<S>& mechanism, const
   const Vector3<S> by_w = twists.J_w.transpose() * (twists.frame.R.transpose() * torque);
   const Vector3<S> by_t = twists.R_parent.transpose() * force;
   for (int i = block.first; i < block.first + block.size; ++i) {
-    const int k = set[i].component;
+    const int k = applied.set[i].component;
     grad[i] += k < 3 ? by_w[k] : by_t[k - 3];
   }
 }
 
-template FrameTwists<double> frame_twists(const Model&, const Mechanism<double>&,
-                                          const Motion<double>&, const ParameterSet&,
-                                          const ParameterBlock&, const VectorView<double>&);
-template FrameTwists<Dual> frame_twists(const Model&, const Mechanism<Dual>&, const Motion<Dual>&,
-                                        const ParameterSet&, const ParameterBlock&,
-                                        const VectorView<Dual>&);
-template void add_frame_gradient(const Model&, const Mechanism<double>&, const Motion<double>&,
-                                 const ParameterSet&, const ParameterBlock&,
-                                 const VectorView<double>&, const Vector6<double>&,
+template FrameTwists<double> frame_twists(const Model&, const Applied<double>&,
+                                          const Motion<double>&, const ParameterBlock&);
+template FrameTwists<Dual> frame_twists(const Model&, const Applied<Dual>&, const Motion<Dual>&,
+                                        const ParameterBlock&);
+template void add_frame_gradient(const Model&, const Applied<double>&, const Motion<double>&,
+                                 const ParameterBlock&, const Vector6<double>&,
                                  Eigen::Ref<VectorX<double>>);
-template void add_frame_gradient(const Model&, const Mechanism<Dual>&, const Motion<Dual>&,
-                                 const ParameterSet&, const ParameterBlock&,
-                                 const VectorView<Dual>&, const Vector6<Dual>&,
+template void add_frame_gradient(const Model&, const Applied<Dual>&, const Motion<Dual>&,
+                                 const ParameterBlock&, const Vector6<Dual>&,
                                  Eigen::Ref<VectorX<Dual>>);
+
 }  // namespace hbar

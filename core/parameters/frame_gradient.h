@@ -1,7 +1,7 @@
 #pragma once
 
 #include "hbar/core/dynamics/motion.h"
-#include "hbar/core/parameters/parameters.h"
+#include "hbar/core/parameters/applied.h"
 
 namespace hbar {
 
@@ -20,22 +20,19 @@ struct FrameTwists {
 
 /// The twists of a joint or body transformation at (q, p).
 ///
-/// @param block  a joint or body transformation
-/// @param p      values of the set's parameters                                  [set.size()]
+/// @param block  a joint or body transformation of the set
 template <Scalar S>
-[[nodiscard]] FrameTwists<S> frame_twists(const Model& model, const Mechanism<S>& mechanism,
-                                          const Motion<S>& motion, const ParameterSet& set,
-                                          const ParameterBlock& block, const VectorView<S>& p);
+[[nodiscard]] FrameTwists<S> frame_twists(const Model& model, const Applied<S>& applied,
+                                          const Motion<S>& motion, const ParameterBlock& block);
 
 /// grad += Σ over the frame's parameters in a block of  covector · (world twist of each).
 ///
-/// @param block     a joint or body transformation
+/// @param block     a joint or body transformation of the set
 /// @param covector  of displacing the frame, world, at its origin                [6]
-/// @param p, grad   values of, and gradient by, the set's parameters             [set.size()]
+/// @param grad      gradient by the set's parameters                              [set.size()]
 template <Scalar S>
-void add_frame_gradient(const Model& model, const Mechanism<S>& mechanism, const Motion<S>& motion,
-                        const ParameterSet& set, const ParameterBlock& block,
-                        const VectorView<S>& p, const Vector6<S>& covector,
+void add_frame_gradient(const Model& model, const Applied<S>& applied, const Motion<S>& motion,
+                        const ParameterBlock& block, const Vector6<S>& covector,
                         Eigen::Ref<VectorX<S>> grad);
 
 }  // namespace hbar

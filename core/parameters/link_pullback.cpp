@@ -89,20 +89,19 @@ void LinkPullback<S>::add_rates(const Motion<S>& motion, Eigen::Ref<VectorX<S>> 
 }
 
 template <Scalar S>
-void LinkPullback<S>::add_frames(const Mechanism<S>& mechanism, const ParameterSet& set,
-                                 const VectorView<S>& p, const Motion<S>& motion,
+void LinkPullback<S>::add_frames(const Applied<S>& applied, const Motion<S>& motion,
                                  Eigen::Ref<VectorX<S>> grad_p) const {
-  for (const ParameterBlock& block : set.blocks()) {
+  for (const ParameterBlock& block : applied.set.blocks()) {
     if (block.kind == ParameterKind::kJointTransform) {
       const int first = first_node_of_link(model_, block.owner);
       const auto k = static_cast<std::size_t>(first);
-      add_frame_gradient<S>(model_, mechanism, motion, set, block, p,
+      add_frame_gradient<S>(model_, applied, motion, block,
                             frame_covector<S>(by_displacement_[k], by_twist_[k],
                                               motion.parent_of(model_.tree().node(first)).V),
                             grad_p);
     } else if (block.kind == ParameterKind::kBodyTransform) {
       const auto k = static_cast<std::size_t>(block.owner);
-      add_frame_gradient<S>(model_, mechanism, motion, set, block, p,
+      add_frame_gradient<S>(model_, applied, motion, block,
                             frame_covector<S>(bodies_.by_displacement[k], bodies_.by_twist[k],
                                               motion.at(model_.node_of_link(block.owner)).V),
                             grad_p);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "hbar/core/dynamics/body_motion.h"
-#include "hbar/core/parameters/parameters.h"
+#include "hbar/core/parameters/applied.h"
 
 namespace hbar {
 
@@ -34,10 +34,8 @@ class LinkPullback {
   /// by_qdot += gradient by their rates.                                             [dof]
   void add_rates(const Motion<S>& motion, Eigen::Ref<VectorX<S>> by_qdot) const;
   /// grad_p += gradient by the set's joint and body transformations.          [set.size()]
-  ///
-  /// @param p  values of the set's parameters                                 [set.size()]
-  void add_frames(const Mechanism<S>& mechanism, const ParameterSet& set, const VectorView<S>& p,
-                  const Motion<S>& motion, Eigen::Ref<VectorX<S>> grad_p) const;
+  void add_frames(const Applied<S>& applied, const Motion<S>& motion,
+                  Eigen::Ref<VectorX<S>> grad_p) const;
 
  private:
   const Model& model_;

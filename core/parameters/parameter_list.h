@@ -1,16 +1,29 @@
 #pragma once
 
-#include "hbar/core/parameters/parameters.h"
+#include <vector>
 
-namespace hbar {
+#include "hbar/core/model/model.h"
+#include "hbar/core/parameters/parameter.h"
 
-/// Every scalar that can be free in a model, in the order of ParameterKind, then of links (motors,
-/// contacts), then of components; mass and inertia, stiffness and damping, P and D stand together
-/// by link. Contact points and scales are listed of bodies whose points a contact tests, and of
-/// those whose design mask asks for them.
-[[nodiscard]] std::vector<Parameter> list_parameters(const Model& model);
+namespace hbar::detail {
 
-/// The bit of a link's design mask that selects a kind; 0 where none does.
-[[nodiscard]] unsigned mask_bit(ParameterKind kind);
+// What the table of kinds (parameter_kinds.h) lists: each function appends an owner's parameters of
+// one kind, with names, units, nominal values and bounds.
 
-}  // namespace hbar
+using ParameterList = std::vector<Parameter>;
+
+void list_joint_transform(const Model& model, int link, ParameterList& out);
+void list_body_transform(const Model& model, int link, ParameterList& out);
+void list_contact_points(const Model& model, int link, ParameterList& out);
+void list_mass(const Model& model, int link, ParameterList& out);
+void list_inertia(const Model& model, int link, ParameterList& out);
+void list_stiffness(const Model& model, int link, ParameterList& out);
+void list_damping(const Model& model, int link, ParameterList& out);
+void list_contact_scale(const Model& model, int link, ParameterList& out);
+void list_motor_P(const Model& model, int motor, ParameterList& out);
+void list_motor_D(const Model& model, int motor, ParameterList& out);
+void list_gravity(const Model& model, int, ParameterList& out);
+void list_contact_coefficients(const Model& model, int contact, ParameterList& out);
+void list_sizes(const Model& model, int link, ParameterList& out);
+
+}  // namespace hbar::detail

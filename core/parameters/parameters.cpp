@@ -5,9 +5,7 @@
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/base/nearest_name.h"
-#include "hbar/core/base/rotation.h"
-#include "hbar/core/geometry/surface_points.h"
-#include "hbar/core/parameters/parameter_list.h"
+#include "hbar/core/parameters/parameter_kinds.h"
 
 namespace hbar {
 namespace {
@@ -17,49 +15,16 @@ bool selects(std::string_view wanted, std::string_view name) {
   return name.starts_with(wanted) && (name.size() == wanted.size() || name[wanted.size()] == '.');
 }
 
+/// Numbers outside what their kinds may take.
 template <Scalar S>
-RigidTransform<S> displaced(const RigidTransform<double>& nominal, const Vector6<S>& w_t) {
-  return {nominal.R.cast<S>() * exp_rotation<S>(w_t.template head<3>()),
-          nominal.p.cast<S>() + w_t.template tail<3>()};
-}
-
-/// Lets mass, moments and contact points follow the sizes already set. Kinds are applied in order,
-/// so that all of these hold their values at nominal sizes.
-template <Scalar S>
-void resize_body(const Body& body, int link, Mechanism<S>& mechanism) {
-  const auto& sizes = mechanism.sizes.col(link);
-  const std::vector<double> listed = sizes_of(body.shape);
-  Eigen::Vector3d nominal = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < listed.size(); ++k) {
-    nominal[static_cast<Eigen::Index>(k)] = listed[k];
-  }
-  const UnitSolid<S> now = unit_solid<S>(body.shape, sizes);
-  const UnitSolid<double> before = unit_solid<double>(body.shape, nominal);
-  mechanism.mass[link] *= now.mass / before.mass;
-  for (int k = 0; k < 3; ++k) {
-    mechanism.moments(k, link) *= now.moments[k] / before.moments[k];
-  }
-  auto& points = mechanism.contact_points[static_cast<std::size_t>(link)];
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    for (std::size_t k = 0; k < listed.size(); ++k) {
-      const Eigen::Vector3d rate =
-          surface_point_rate(body.shape, body.contact_points.col(i), static_cast<int>(k));
-      points.col(i) += rate.cast<S>() * (sizes[static_cast<Eigen::Index>(k)] - listed[k]);
-    }
-  }
-}
-
-/// Coefficients, scales and sizes that no contact can have.
-template <Scalar S>
-void require_contact_numbers(const ParameterSet& set, const VectorView<S>& p) {
+void require_ranges(const ParameterSet& set, const VectorView<S>& p) {
   for (int i = 0; i < set.size(); ++i) {
     const double value = value_of(p[i]);
-    const ParameterKind kind = set[i].kind;
-    const bool may_vanish =
-        kind == ParameterKind::kContactScale || kind == ParameterKind::kContactCoefficient;
-    if ((may_vanish && value < 0.0) || (kind == ParameterKind::kSize && !(value > 0.0))) {
-      throw InvalidInput(
-          concat(set[i].name, " is ", value, "; it must be ", may_vanish ? "≥ 0" : "positive"));
+    const ParameterRange range = row_of(set[i].kind).range;
+    if ((range == ParameterRange::kNonNegative && value < 0.0) ||
+        (range == ParameterRange::kPositive && !(value > 0.0))) {
+      throw InvalidInput(concat(set[i].name, " is ", value, "; it must be ",
+                                range == ParameterRange::kPositive ? "positive" : "≥ 0"));
     }
   }
 }
@@ -82,70 +47,15 @@ void require_physical(const Model& model, const Eigen::VectorXd& mass,
 
 }  // namespace
 
-const std::vector<ParameterKind>& parameter_kinds() {
-  static const std::vector<ParameterKind> kinds = {ParameterKind::kJointTransform,
-                                                   ParameterKind::kBodyTransform,
-                                                   ParameterKind::kContactPoint,
-                                                   ParameterKind::kMass,
-                                                   ParameterKind::kInertia,
-                                                   ParameterKind::kStiffness,
-                                                   ParameterKind::kDamping,
-                                                   ParameterKind::kContactScale,
-                                                   ParameterKind::kMotorP,
-                                                   ParameterKind::kMotorD,
-                                                   ParameterKind::kGravity,
-                                                   ParameterKind::kContactCoefficient,
-                                                   ParameterKind::kSize};
-  return kinds;
-}
-
-std::string_view kind_name(ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::kJointTransform:
-      return "joint transformation (I)";
-    case ParameterKind::kBodyTransform:
-      return "body transformation (II)";
-    case ParameterKind::kContactPoint:
-      return "contact point (III)";
-    case ParameterKind::kMass:
-      return "mass (IV)";
-    case ParameterKind::kInertia:
-      return "inertia (IV)";
-    case ParameterKind::kStiffness:
-      return "stiffness (V)";
-    case ParameterKind::kDamping:
-      return "damping (V)";
-    case ParameterKind::kContactScale:
-      return "contact scale (VI)";
-    case ParameterKind::kMotorP:
-      return "motor P";
-    case ParameterKind::kMotorD:
-      return "motor D";
-    case ParameterKind::kGravity:
-      return "gravity";
-    case ParameterKind::kContactCoefficient:
-      return "contact coefficient";
-    case ParameterKind::kSize:
-      return "size";
-  }
-  return "";
-}
-
 namespace {
 
-/// Where list_parameters puts a kind of an owner: kinds that Table II has under one number, and
-/// both gains of a motor, stand together by owner.
+/// Where list_parameters puts a kind of an owner.
 std::tuple<ParameterKind, int, ParameterKind> place(ParameterKind kind, int owner) {
-  switch (kind) {
-    case ParameterKind::kInertia:
-      return {ParameterKind::kMass, owner, kind};
-    case ParameterKind::kDamping:
-      return {ParameterKind::kStiffness, owner, kind};
-    case ParameterKind::kMotorD:
-      return {ParameterKind::kMotorP, owner, kind};
-    default:
-      return {kind, owner, kind};
+  ParameterKind group = kind;
+  while (row_of(group).with_previous) {
+    group = static_cast<ParameterKind>(static_cast<int>(group) - 1);
   }
+  return {group, owner, kind};
 }
 
 }  // namespace
@@ -166,7 +76,7 @@ ParameterSet ParameterSet::all(const Model& model) { return ParameterSet(list_pa
 ParameterSet ParameterSet::masked(const Model& model) {
   std::vector<Parameter> chosen;
   for (Parameter& parameter : list_parameters(model)) {
-    const unsigned bit = mask_bit(parameter.kind);
+    const unsigned bit = row_of(parameter.kind).mask_bit;
     if (bit != 0 && (model.link(parameter.owner).design_mask & bit) != 0) {
       chosen.push_back(std::move(parameter));
     }
@@ -254,63 +164,18 @@ void apply_parameters(const Model& model, const ParameterSet& set, const VectorV
   if (p.size() != set.size()) {
     throw InvalidInput(concat("p has ", p.size(), " entries; the parameter set has ", set.size()));
   }
-  require_contact_numbers<S>(set, p);
+  require_ranges<S>(set, p);
   mechanism = nominal_mechanism<S>(model);
+  std::vector<ParameterValue<S>> values;
   for (const ParameterBlock& block : set.blocks()) {
-    const auto owner = static_cast<std::size_t>(block.owner);
-    Vector6<S> w_t = Vector6<S>::Zero();
+    values.clear();
     for (int i = block.first; i < block.first + block.size; ++i) {
       if (!std::isfinite(value_of(p[i]))) {
         throw InvalidInput(concat(set[i].name, " is ", value_of(p[i]), "; it must be finite"));
       }
-      const int k = set[i].component;
-      switch (block.kind) {
-        case ParameterKind::kJointTransform:
-        case ParameterKind::kBodyTransform:
-          w_t[k] = p[i];
-          break;
-        case ParameterKind::kContactPoint:
-          mechanism.contact_points[owner](k % 3, k / 3) = p[i];
-          break;
-        case ParameterKind::kContactScale:
-          mechanism.contact_scale[block.owner] = p[i];
-          break;
-        case ParameterKind::kContactCoefficient:
-          mechanism.contact_coefficients(k, block.owner) = p[i];
-          break;
-        case ParameterKind::kSize:
-          mechanism.sizes(k, block.owner) = p[i];
-          break;
-        case ParameterKind::kMass:
-          mechanism.mass[block.owner] = p[i];
-          break;
-        case ParameterKind::kInertia:
-          mechanism.moments(k, block.owner) = p[i];
-          break;
-        case ParameterKind::kStiffness:
-          mechanism.stiffness[block.owner] = p[i];
-          break;
-        case ParameterKind::kDamping:
-          mechanism.damping[block.owner] = p[i];
-          break;
-        case ParameterKind::kMotorP:
-          mechanism.motor_P[block.owner] = p[i];
-          break;
-        case ParameterKind::kMotorD:
-          mechanism.motor_D[block.owner] = p[i];
-          break;
-        case ParameterKind::kGravity:
-          mechanism.gravity[k] = p[i];
-          break;
-      }
+      values.push_back({set[i].component, p[i]});
     }
-    if (block.kind == ParameterKind::kJointTransform) {
-      mechanism.X_PJ[owner] = displaced<S>(model.link(block.owner).joint.X_PJ, w_t);
-    } else if (block.kind == ParameterKind::kBodyTransform) {
-      mechanism.X_JB[owner] = displaced<S>(model.link(block.owner).body.X_JB, w_t);
-    } else if (block.kind == ParameterKind::kSize) {
-      resize_body<S>(model.link(block.owner).body, block.owner, mechanism);
-    }
+    row_of(block.kind).actions<S>().apply(model, block.owner, values, mechanism);
   }
   require_physical(model, mechanism.mass.unaryExpr([](const S& m) { return value_of(m); }),
                    mechanism.moments.unaryExpr([](const S& m) { return value_of(m); }));

@@ -5,50 +5,9 @@
 #include <vector>
 
 #include "hbar/core/model/mechanism.h"
+#include "hbar/core/parameters/parameter.h"
 
 namespace hbar {
-
-/// Classes of design parameter, in the order in which they are listed: Table II of the document by
-/// its roman numbers, then what the document does not free.
-enum class ParameterKind {
-  kJointTransform,  ///< I: rotation vector w and translation t, X_PJ = (R̄ exp([w]), p̄ + t)
-  kBodyTransform,   ///< II: the same for X_JB
-  kContactPoint,    ///< III: x, y, z of each contact point in the body frame, at nominal sizes
-  kMass,            ///< IV: at nominal sizes
-  kInertia,         ///< IV: principal moments, at nominal sizes
-  kStiffness,       ///< V
-  kDamping,         ///< V
-  kContactScale,    ///< VI: s of the body whose points touch
-  kMotorP,
-  kMotorD,
-  kGravity,
-  kContactCoefficient,  ///< k_n, k_t, μ, k_d of a contact
-  kSize  ///< of a body's shape: moves its contact points and surface, scales its mass and moments
-};
-
-/// The classes, with the name each has in messages and reports.
-[[nodiscard]] const std::vector<ParameterKind>& parameter_kinds();
-[[nodiscard]] std::string_view kind_name(ParameterKind kind);
-
-/// One scalar design parameter.
-struct Parameter {
-  ParameterKind kind = ParameterKind::kJointTransform;
-  int owner = 0;         ///< link, motor or contact; 0 for gravity
-  int component = 0;     ///< within its kind and owner
-  std::string name;      ///< as in scene_format.md: "joint.NAME.rotation.x", "body.NAME.mass", …
-  std::string unit;      ///< in the model's unit system
-  double nominal = 0.0;  ///< the model's own value; 0 for transformations
-  double lower = 0.0;    ///< physical bound
-  double upper = 0.0;
-};
-
-/// Scalars of one kind and owner that stand together in p.
-struct ParameterBlock {
-  ParameterKind kind = ParameterKind::kJointTransform;
-  int owner = 0;
-  int first = 0;  ///< index in p
-  int size = 0;
-};
 
 /// Which parameters are free, and in which order they stand in the vector p: by kind, then by link
 /// (or motor) in file order, then by component. The single registry: everything that reads or

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "hbar/core/parameters/parameters.h"
+#include <vector>
+
+#include "hbar/core/model/model.h"
 
 namespace hbar {
 
@@ -13,9 +15,5 @@ namespace hbar {
 
 /// Coordinates that a contact couples: those that move either of its bodies, ascending.
 [[nodiscard]] std::vector<int> coupled_coordinates(const Model& model, const Contact& contact);
-
-/// The rows of g that a block's parameters can touch, ascending: the coordinates on the path to the
-/// world, for a joint transformation also those below it, and what contacts of moved bodies couple.
-[[nodiscard]] std::vector<int> parameter_rows(const Model& model, const ParameterBlock& block);
 
 }  // namespace hbar

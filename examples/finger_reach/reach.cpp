@@ -137,7 +137,7 @@ Eigen::VectorXd tip_errors(const Reach& reach, const TrajectoryValues& values) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(reach.targets.size()));
   for (std::size_t i = 0; i < reach.targets.size(); ++i) {
     const Target& target = reach.targets[i];
-    out[static_cast<Eigen::Index>(i)] = (values.v.col(target.step) - target.position).norm();
+    out[static_cast<Eigen::Index>(i)] = (values.v().col(target.step) - target.position).norm();
   }
   return out;
 }

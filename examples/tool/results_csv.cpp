@@ -25,11 +25,15 @@ std::string results_csv(const LoadedProblem& loaded, const Results& results) {
   for (Eigen::Index k = 0; k < values.q.cols(); ++k) {
     const auto end = std::back_inserter(text);
     fmt::format_to(end, "{:.17g}", static_cast<double>(k) * values.h);
-    for (const Eigen::MatrixXd* block : {&values.q, &values.qdot, &values.v, &values.tactile}) {
-      for (const double entry : block->col(k)) {
+    const auto write = [&](const Eigen::Ref<const Eigen::VectorXd>& numbers) {
+      for (const double entry : numbers) {
         fmt::format_to(end, ",{:.17g}", entry);
       }
-    }
+    };
+    write(values.q.col(k));
+    write(values.qdot.col(k));
+    write(values.v().col(k));
+    write(values.tactile().col(k));
     text += '\n';
   }
   return text;

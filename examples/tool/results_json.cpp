@@ -168,11 +168,11 @@ std::string results_json(const LoadedProblem& loaded, const Results& results) {
   out["variable_names"] = variable_names(model);
   out["q"] = rows(values.q);
   out["qdot"] = rows(values.qdot);
-  out["variables"] = rows(values.v.rightCols(values.v.cols() - 1));
+  out["variables"] = rows(values.v().rightCols(values.v().cols() - 1));
   out["contacts"] = contact_names(model);
   out["contact"] = contact_json(model, results);
   out["tactile_names"] = tactile_names(model);
-  out["tactile"] = rows(values.tactile.rightCols(values.tactile.cols() - 1));
+  out["tactile"] = rows(values.tactile().rightCols(values.tactile().cols() - 1));
   out["newton_iterations"] = results.newton;
   out["objective_kind"] = objective_name(loaded.objective);
   if (results.value) {

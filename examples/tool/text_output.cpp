@@ -248,8 +248,8 @@ std::string sensor_table(const Model& model, const TrajectoryValues& values) {
     const Eigen::Index count = 3 * sensor.points.cols();
     Eigen::Index row = 0;
     Eigen::Index k = 0;
-    values.tactile.middleRows(first, count).cwiseAbs().maxCoeff(&row, &k);
-    const double largest = values.tactile(first + row, k);
+    values.tactile().middleRows(first, count).cwiseAbs().maxCoeff(&row, &k);
+    const double largest = values.tactile()(first + row, k);
     table.add({sensor.name, fmt::format("{} {}", number(largest), force_unit(model)),
                largest == 0.0
                    ? ""
@@ -323,8 +323,9 @@ std::string summarize(const LoadedProblem& loaded, const Results& results) {
   const std::vector<std::string> variables = variable_names(model);
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    table.add({variables[i], fmt::format("{} → {} {}", number(values.v(row, 0)),
-                                         number(values.v(row, last)), length_unit(model.units()))});
+    table.add(
+        {variables[i], fmt::format("{} → {} {}", number(values.v()(row, 0)),
+                                   number(values.v()(row, last)), length_unit(model.units()))});
   }
   text += fmt::format("from t = 0 to t = {} s\n{}", number(results.report.time), table.text());
   if (model.contact_count() > 0) {

@@ -9,7 +9,7 @@
 namespace hbar::walker {
 namespace {
 
-constexpr int kPowers = 4;  // measured rows before the forces of the feet
+constexpr int kPowers = 4;  // declared rows before the forces of the feet
 constexpr int kForceRows = 4;
 
 double weight_of(const Horizon& horizon, const Eigen::VectorXd& p) {
@@ -43,7 +43,7 @@ double friction_use(const TrajectoryValues& values, double weight) {
   double use = 0.0;
   for (Eigen::Index k = 0; k < values.measured.cols(); ++k) {
     for (int foot = 0; foot < 2; ++foot) {
-      const auto force = values.measured.col(k).segment<kForceRows>(kPowers + kForceRows * foot);
+      const auto force = values.declared().col(k).segment<kForceRows>(kPowers + kForceRows * foot);
       if (force[0] > kCarries * weight) {
         use = std::max(use, std::abs(force[1]) / force[0]);
       }
@@ -65,8 +65,8 @@ double slip_of(const TrajectoryValues& values, const Gait& gait, const Model& mo
     for (int k = 1; k <= steps; ++k) {
       if (std::min(gait.load(foot, k), gait.load(foot, k - 1)) > kCarries * gait.weight) {
         const int x = 3 * foot;
-        slip +=
-            std::abs(values.v(x, k) - values.v(x, k - 1) + radius * (turned(k) - turned(k - 1)));
+        slip += std::abs(values.v()(x, k) - values.v()(x, k - 1) +
+                         radius * (turned(k) - turned(k - 1)));
       }
     }
   }
@@ -96,7 +96,7 @@ Gait examine(const Plan& plan, const TrajectoryProblem& problem, const Trajector
   Gait gait;
   gait.lengths = lengths;
   gait.weight = weight_of(horizon, values.p);
-  const auto powers = stride.measured.topRows(kPowers).middleCols(1, plan.steps);
+  const auto powers = stride.declared().topRows(kPowers).middleCols(1, plan.steps);
   gait.work = options.h * powers.cwiseAbs().sum();
   gait.cost_of_transport = gait.work / (gait.weight * plan.advance());
   const Eigen::Index half = plan.steps + 1;
@@ -109,8 +109,8 @@ Gait examine(const Plan& plan, const TrajectoryProblem& problem, const Trajector
   gait.half = gap_to_start(stride, plan.steps, plan.advance(), mirror(horizon.model()));
   gait.whole = gap_to_start(stride, 2 * plan.steps, 2.0 * plan.advance(), itself);
   gait.load.resize(2, stride.measured.cols());
-  gait.load.row(0) = stride.measured.row(kPowers);
-  gait.load.row(1) = stride.measured.row(kPowers + kForceRows);
+  gait.load.row(0) = stride.declared().row(kPowers);
+  gait.load.row(1) = stride.declared().row(kPowers + kForceRows);
   gait.friction_use = friction_use(stride, gait.weight);
   gait.slip = slip_of(stride, gait, horizon.model(), plan.steps);
   return gait;

@@ -105,13 +105,13 @@ std::vector<ConstraintPointer> contact_schedule(const Plan& plan, const Model& m
       std::get<Sphere>(model.link(model.find_body("left_foot")).body.shape).radius;
   const int off = plan.take_off();
   std::vector<ConstraintPointer> rows;
-  rows.push_back(value_limits("height of the left foot", ValueField::kV, left,
+  rows.push_back(value_limits("height of the left foot", ValueField::kMeasured, left,
                               step_range(0, plan.steps), -kInfinity, radius));
-  rows.push_back(value_limits("height of the right foot", ValueField::kV, right, step_range(0, off),
-                              -kInfinity, radius));
+  rows.push_back(value_limits("height of the right foot", ValueField::kMeasured, right,
+                              step_range(0, off), -kInfinity, radius));
   for (int k = off + 1; k < plan.steps; ++k) {
     const double share = static_cast<double>(k - off) / (plan.steps - off);
-    rows.push_back(value_limits("height of the right foot", ValueField::kV, right, {k},
+    rows.push_back(value_limits("height of the right foot", ValueField::kMeasured, right, {k},
                                 radius + plan.clearance * std::sin(std::numbers::pi * share),
                                 kInfinity));
   }

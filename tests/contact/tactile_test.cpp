@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hbar/core/parameters/parameter_kinds.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random_model.h"
 
@@ -16,14 +17,29 @@ using testing::largest;
 using testing::Random;
 using testing::relative_gap;
 
+/// Calls f(sensor, its first reading, their number).
+template <typename F>
+void for_each_sensor(const Model& model, const F& f) {
+  Eigen::Index first = 0;
+  for (int i = 0; i < static_cast<int>(model.tactile_sensors().size()); ++i) {
+    const Eigen::Index count =
+        3 * model.tactile_sensors()[static_cast<std::size_t>(i)].points.cols();
+    f(i, first, count);
+    first += count;
+  }
+}
+
 template <Scalar S>
 VectorX<S> readings_at(const Model& model, const Mechanism<S>& mechanism, const VectorX<S>& q,
                        const VectorX<S>& qdot) {
   Motion<S> motion(model.tree());
   compute_motion<S>(model.tree(), mechanism, q, qdot, VectorX<S>::Zero(model.dof()), motion);
-  const TactileReadings<S> tactile(model);
+  TactileReadings<S> tactile(model);
+  tactile.linearize(mechanism, motion);
   VectorX<S> out = VectorX<S>::Constant(model.tactile_count(), S(7.0));
-  tactile.readings(mechanism, motion, out);
+  for_each_sensor(model, [&](int sensor, Eigen::Index first, Eigen::Index count) {
+    tactile.read(sensor, out.segment(first, count));
+  });
   return out;
 }
 
@@ -165,7 +181,20 @@ class EveryModelsReadings : public ::testing::TestWithParam<unsigned> {
     by_q = VectorXd::Zero(model.dof());
     by_qdot = VectorXd::Zero(model.dof());
     by_p = VectorXd::Zero(set.size());
-    tactile.pull_back(mechanism, set, p, motion, y, by_q, by_qdot, by_p);
+    tactile.linearize(mechanism, motion);
+    add_gradients(y, by_q, by_qdot, by_p);
+  }
+  /// Adds the gradients that weights y have where the readings were linearised.
+  void add_gradients(const VectorXd& y, VectorXd& q, VectorXd& qdot, VectorXd& grad_p) const {
+    const Applied<double> applied{mechanism, set, p};
+    LinkPullback<double> links(model);
+    for_each_sensor(model, [&](int sensor, Eigen::Index first, Eigen::Index count) {
+      tactile.pull_back(sensor, y.segment(first, count), applied, links, grad_p);
+    });
+    links.sum();
+    links.add_coordinates(motion, q);
+    links.add_rates(motion, qdot);
+    links.add_frames(applied, motion, grad_p);
   }
   MatrixXd duals_by_state(bool rates) const {
     auto dual = nominal_mechanism<Dual>(model);
@@ -222,7 +251,8 @@ TEST_P(EveryModelsReadings, ArePulledBackToParametersByTheTransposeOfTheDualJaco
     const VectorXd y = random.vector(model.tactile_count());
     pull_back(y);
     const VectorXd exact = duals_by_parameters().transpose() * y;
-    for (const ParameterKind kind : parameter_kinds()) {
+    for (const ParameterKindRow& row : parameter_kinds()) {
+      const ParameterKind kind = row.kind;
       std::vector<int> mine;
       for (int k = 0; k < set.size(); ++k) {
         if (set[k].kind == kind) {
@@ -248,7 +278,7 @@ TEST_P(EveryModelsReadings, AddTheirGradientsToWhatIsThere) {
   VectorXd q_after = q_before;
   VectorXd qdot_after = qdot_before;
   VectorXd p_after = p_before;
-  tactile.pull_back(mechanism, set, p, motion, y, q_after, qdot_after, p_after);
+  add_gradients(y, q_after, qdot_after, p_after);
   EXPECT_LT(largest((q_after - q_before - by_q).eval()), 1e-14 * (1.0 + largest(by_q)));
   EXPECT_LT(largest((qdot_after - qdot_before - by_qdot).eval()), 1e-14 * (1.0 + largest(by_qdot)));
   EXPECT_LT(largest((p_after - p_before - by_p).eval()), 1e-14 * (1.0 + largest(by_p)));

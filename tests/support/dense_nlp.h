@@ -5,6 +5,7 @@
 #include "hbar/adjoint/programs/transcription.h"
 #include "hbar/adjoint/terms/constraint.h"
 #include "hbar/adjoint/terms/value_access.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/solvers/nlp/nlp.h"
 #include "tests/support/random.h"
 

@@ -7,6 +7,7 @@
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
+#include "hbar/core/parameters/parameter_kinds.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
 
@@ -39,7 +40,8 @@ struct InputClass {
 [[nodiscard]] inline std::vector<InputClass> input_classes(const Horizon& horizon,
                                                            const Inputs& inputs) {
   std::vector<InputClass> classes;
-  for (const ParameterKind kind : parameter_kinds()) {
+  for (const ParameterKindRow& row_of_kind : parameter_kinds()) {
+    const ParameterKind kind = row_of_kind.kind;
     InputClass of_kind{std::string(kind_name(kind)), {}};
     for (int i = 0; i < horizon.parameters().size(); ++i) {
       if (horizon.parameters()[i].kind == kind) {

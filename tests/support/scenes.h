@@ -87,10 +87,10 @@ inline const Eigen::Vector3d kGravity{0.0, 0.0, -9.81};
   return user_term(
       "final variables",
       [target](const TrajectoryValues& values) {
-        return 0.5 * (values.v.rightCols<1>() - target).squaredNorm();
+        return 0.5 * (values.v().rightCols<1>() - target).squaredNorm();
       },
       [target](const TrajectoryValues& values, TrajectoryPartials& partials) {
-        partials.v.rightCols<1>() += values.v.rightCols<1>() - target;
+        partials.v().rightCols<1>() += values.v().rightCols<1>() - target;
       });
 }
 

@@ -122,12 +122,12 @@ TEST_P(GoldenRun, HasTheSameTrajectoryVariablesAndObjective) {
   EXPECT_LT(relative_norm(values.q.rightCols(steps), columns_of(golden_.at("q"))), tolerance_);
   EXPECT_LT(relative_norm(values.qdot.rightCols(steps), columns_of(golden_.at("qdot"))),
             tolerance_);
-  if (values.v.rows() > 0) {
-    EXPECT_LT(relative_norm(values.v.rightCols(steps), columns_of(golden_.at("variables"))),
+  if (values.v().rows() > 0) {
+    EXPECT_LT(relative_norm(values.v().rightCols(steps), columns_of(golden_.at("variables"))),
               tolerance_);
   }
-  if (values.tactile.rows() > 0) {
-    EXPECT_LT(relative_norm(values.tactile.rightCols(steps), columns_of(golden_.at("tactile"))),
+  if (values.tactile().rows() > 0) {
+    EXPECT_LT(relative_norm(values.tactile().rightCols(steps), columns_of(golden_.at("tactile"))),
               tolerance_);
   }
   const double golden_objective = golden_.at("objective");

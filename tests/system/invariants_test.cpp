@@ -35,7 +35,7 @@ double energy(const Model& model, const TrajectoryValues& values, Eigen::Index k
       testing::mass_matrix_at<double>(model, mechanism, VectorXd(values.q.col(k)));
   double sum = 0.5 * qdot.dot(M * qdot);
   for (int i = 0; i < model.link_count(); ++i) {
-    sum -= model.link(i).body.mass * model.gravity().dot(values.v.col(k).segment<3>(3 * i));
+    sum -= model.link(i).body.mass * model.gravity().dot(values.v().col(k).segment<3>(3 * i));
   }
   return sum;
 }

@@ -176,7 +176,7 @@ TEST(EveryMethod, ConvergesWithItsOrderThroughAChangeOfChart) {
       inputs.qdot0 = scene.rate0;
       const Trajectory trajectory = simulate(horizon, inputs).trajectory();
       EXPECT_EQ(trajectory.chart_switches.size(), 1U) << integrator.name;
-      return (read_values(horizon, trajectory).v.col(n) - exact).norm();
+      return (read_values(horizon, trajectory).v().col(n) - exact).norm();
     };
     const int n = enough_steps(integrator);
     EXPECT_LT(error(n), 0.05) << integrator.name;

@@ -80,7 +80,7 @@ TEST_F(ToolContact, ResultsHoldWhatTheLibraryComputes) {
   LoadedProblem loaded = load_problem(kPad, options);
   const Horizon& horizon = loaded.problem.horizon;
   const Trajectory trajectory = simulate(horizon, loaded.problem.inputs).trajectory();
-  const Eigen::MatrixXd tactile = read_values(horizon, trajectory).tactile;
+  const Eigen::MatrixXd tactile = read_values(horizon, trajectory).tactile();
   const auto contact = contact_history(horizon, trajectory);
 
   const json r = run({"simulate", kPad, "--steps", "20", "--objective", "tactile"});

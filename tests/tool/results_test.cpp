@@ -90,7 +90,7 @@ TEST_F(ToolResults, JsonHoldsWhatTheLibraryComputes) {
   EXPECT_EQ(vector_of(r.at("q").at(0)), problem.inputs.q0);
   EXPECT_LT(relative_gap(columns_of(r.at("q")), values.q), 1e-13);
   EXPECT_LT(relative_gap(columns_of(r.at("qdot")), values.qdot), 1e-13);
-  EXPECT_LT(relative_gap(columns_of(r.at("variables")), values.v.rightCols(15)), 1e-13);
+  EXPECT_LT(relative_gap(columns_of(r.at("variables")), values.v().rightCols(15)), 1e-13);
   EXPECT_EQ(r.at("newton_iterations").size(), 15U);
   EXPECT_EQ(r.at("newton_iterations").at(3), trajectory.newton_iterations(3));
   EXPECT_NEAR(r.at("objective"), expected.value, 1e-13 * expected.value);

@@ -9,6 +9,7 @@
 #include "hbar/adjoint/derivatives/check_gradient.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
+#include "hbar/core/parameters/parameter_kinds.h"
 #include "hbar/solvers/linear/klu.h"
 #include "tests/support/small_problems.h"
 

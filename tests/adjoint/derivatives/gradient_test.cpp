@@ -6,6 +6,7 @@
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/chart.h"
 #include "hbar/core/base/error.h"
+#include "hbar/core/parameters/parameter_kinds.h"
 #include "tests/support/input_vector.h"
 #include "tests/support/random_model.h"
 #include "tests/support/scenes.h"
@@ -210,7 +211,7 @@ TEST(AdjointSweep, PullsBackGivenPartials) {
   EXPECT_EQ(flatten(whole), flatten(given));
   EXPECT_EQ(given.value, 0.0);
   TrajectoryPartials twice = objective.partials(values);
-  for (Eigen::MatrixXd* part : {&twice.q, &twice.qdot, &twice.v, &twice.u}) {
+  for (Eigen::MatrixXd* part : {&twice.q, &twice.qdot, &twice.measured, &twice.u}) {
     *part *= 2.0;
   }
   twice.p *= 2.0;

@@ -129,7 +129,9 @@ TEST(SecondOrder, TangentsAreThoseOfTheAssembledSystem) {
   EXPECT_LT(testing::relative_gap(Eigen::VectorXd(tangent.q.reshaped()), expected.q.col(0)), 1e-11);
   EXPECT_LT(testing::relative_gap(Eigen::VectorXd(tangent.qdot.reshaped()), expected.qdot.col(0)),
             1e-11);
-  EXPECT_LT(testing::relative_gap(Eigen::VectorXd(tangent.v.reshaped()), expected.v.col(0)), 1e-11);
+  EXPECT_LT(
+      testing::relative_gap(Eigen::VectorXd(tangent.measured.reshaped()), expected.measured.col(0)),
+      1e-11);
 }
 
 TEST(SecondOrder, WithoutCurvatureIsExactWhereTheMotionIsTheTarget) {
@@ -137,7 +139,7 @@ TEST(SecondOrder, WithoutCurvatureIsExactWhereTheMotionIsTheTarget) {
   const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
   const TrajectoryValues values = read_values(problem.horizon, trajectory);
   Objective objective(tracking(values.q.rightCols(values.q.cols() - 1)));
-  objective.add(variable_tracking(values.v.rightCols(values.v.cols() - 1), 0.3));
+  objective.add(variable_tracking(values.v().rightCols(values.v().cols() - 1), 0.3));
   const Inputs direction = unflatten(some_direction(problem.inputs, 5), problem.inputs);
   HessianProduct there(problem.horizon, objective);
   static_cast<void>(there.set_point(trajectory));

@@ -30,6 +30,7 @@ class EveryStagesHessian : public ::testing::TestWithParam<unsigned> {
     trajectory.qdot = 2.0 * random.matrix(n, stages);
     trajectory.inputs = {p, 0.9 * random.matrix(controls, kBentSteps), trajectory.q.col(0),
                          trajectory.qdot.col(0)};
+    trajectory.mechanism = horizon.mechanism(p);
   }
 
   static SimulationOptions options_of_model(const Model& model) {
@@ -44,10 +45,7 @@ class EveryStagesHessian : public ::testing::TestWithParam<unsigned> {
     }
     return out;
   }
-  [[nodiscard]] OutputRows<double> random_rows() {
-    return {random.vector(model.variable_count()), random.vector(model.tactile_count()),
-            random.vector(horizon.measured_count())};
-  }
+  [[nodiscard]] VectorXd random_rows() { return random.vector(horizon.measured_count()); }
 
   // Where each part stands in x = (q, q̇, a, start q, start q̇, u, d).
   [[nodiscard]] Eigen::Index place(int part) const { return part * n; }
@@ -55,7 +53,7 @@ class EveryStagesHessian : public ::testing::TestWithParam<unsigned> {
 
   /// Gradient of z·g + y·outputs by x at a stage's point moved by `moved`.      [x]
   VectorX<Dual> gradient_at(const StagePoint<double>& at, const VectorX<Dual>& moved,
-                            const VectorXd& z, const OutputRows<double>* y) {
+                            const VectorXd& z, const VectorXd* y) {
     StagePoint<Dual> point = testing::as_dual(model, at);
     point.q += moved.segment(place(0), n);
     point.qdot += moved.segment(place(1), n);
@@ -92,14 +90,16 @@ class EveryStagesHessian : public ::testing::TestWithParam<unsigned> {
           by_u[control] = Dual(-point.c()) * weights[c] * forces.by_u[control];
         }
       }
-      add_parameter_gradient<Dual>(mechanism, set, values, stage, point, weights, 1.0, by_p);
+      add_parameter_gradient<Dual>({mechanism, set, values}, stage, point, weights, 1.0, by_p);
     }
     if (y != nullptr) {
-      InstantOutputs<Dual> outputs(model, horizon.options().measurements);
-      outputs.pull_back(mechanism, set, values, outputs.motion_at(mechanism, point.q, point.qdot),
-                        point.q, point.qdot, point.u,
-                        {y->v.cast<Dual>(), y->tactile.cast<Dual>(), y->measured.cast<Dual>()},
-                        by_q, by_qdot, by_u, by_p);
+      Measurements<Dual> measurements(model, horizon.measurements());
+      InstantMotion<Dual> instants(model, true);
+      const Applied<Dual> applied{mechanism, set, values};
+      const Instant<Dual> instant = instants.at(applied, point.q, point.qdot, point.u);
+      InstantGradient<Dual> by{by_q, by_qdot, by_u, by_p};
+      measurements.linearize(instant);
+      measurements.pull_back(instant, y->cast<Dual>(), by);
     }
     out.segment(place(0), n) = by_q;
     out.segment(place(1), n) = by_qdot;
@@ -109,7 +109,7 @@ class EveryStagesHessian : public ::testing::TestWithParam<unsigned> {
   }
 
   /// The blocks in their places, zero where the header says that there is nothing.   [x x x]
-  [[nodiscard]] MatrixXd assembled() const {
+  [[nodiscard]] MatrixXd assembled(const StageCurvature& h) const {
     MatrixXd out = MatrixXd::Zero(size(), size());
     const auto put = [&](Eigen::Index row, Eigen::Index column, const MatrixXd& block) {
       out.block(row, column, block.rows(), block.cols()) = block;
@@ -117,24 +117,25 @@ class EveryStagesHessian : public ::testing::TestWithParam<unsigned> {
     };
     const Eigen::Index u = place(5);
     const Eigen::Index d = u + controls;
-    put(place(0), place(0), hessian.qq);
-    put(place(0), place(1), hessian.qv);
-    put(place(0), place(2), hessian.qa);
-    put(place(1), place(1), hessian.vv);
-    put(u, place(0), hessian.uq);
-    put(u, place(1), hessian.uv);
-    put(d, place(0), hessian.dq);
-    put(d, place(1), hessian.dv);
-    put(d, place(2), hessian.da);
-    put(d, place(3), hessian.dsq);
-    put(d, place(4), hessian.dsv);
-    put(d, u, hessian.du);
-    put(d, d, hessian.dd);
+    put(place(0), place(0), h.qq);
+    put(place(0), place(1), h.qv);
+    put(place(0), place(2), h.qa);
+    put(place(1), place(1), h.vv);
+    put(u, place(0), h.uq);
+    put(u, place(1), h.uv);
+    put(d, place(0), h.dq);
+    put(d, place(1), h.dv);
+    put(d, place(2), h.da);
+    put(d, place(3), h.dsq);
+    put(d, place(4), h.dsv);
+    put(d, u, h.du);
+    put(d, d, h.dd);
     return out;
   }
   /// The blocks against gradients that move, along directions of every part alone and of all.
-  void expect_exact(const StagePoint<double>& at, const VectorXd& z, const OutputRows<double>* y) {
-    const MatrixXd H = assembled();
+  void expect_exact(const StageCurvature& h, const StagePoint<double>& at, const VectorXd& z,
+                    const VectorXd* y) {
+    const MatrixXd H = assembled(h);
     EXPECT_LT(testing::relative_gap(H, H.transpose()), 1e-12);
     for (int part = 0; part <= 7; ++part) {
       VectorXd d = random.vector(size());
@@ -172,15 +173,15 @@ TEST_P(EveryStagesHessian, IsThatOfDualGradientsAndNothingIsLeftOut) {
   StagePoint<double> point(model);
   History(model).set_point(trajectory, stage, point);
   const VectorXd z = random.vector(n);
-  const OutputRows<double> y = random_rows();
-  hessian.evaluate(trajectory, stage, z, &y);
-  expect_exact(point, z, &y);
-  EXPECT_GT(testing::largest(hessian.qa), 0.0);
-  EXPECT_GT(testing::largest(hessian.uv), 0.0);
-  EXPECT_GT(testing::largest(hessian.du), 0.0);
-  EXPECT_GT(testing::largest(hessian.dsq), 0.0);
-  EXPECT_GT(testing::largest(hessian.dsv), 0.0);
-  const VectorXd by_d = map_jacobian.transpose() * hessian.by_p;
+  const VectorXd y = random_rows();
+  const StageCurvature& h = hessian.evaluate(trajectory, stage, z, &y);
+  expect_exact(h, point, z, &y);
+  EXPECT_GT(testing::largest(h.qa), 0.0);
+  EXPECT_GT(testing::largest(h.uv), 0.0);
+  EXPECT_GT(testing::largest(h.du), 0.0);
+  EXPECT_GT(testing::largest(h.dsq), 0.0);
+  EXPECT_GT(testing::largest(h.dsv), 0.0);
+  const VectorXd by_d = map_jacobian.transpose() * h.by_p;
   const VectorX<Dual> still = VectorX<Dual>::Constant(size(), Dual(0.0));
   const VectorXd expected = testing::values(gradient_at(point, still, z, &y)).tail(kBentDesigns);
   EXPECT_LT(testing::relative_gap(by_d, expected), 1e-12);
@@ -191,10 +192,10 @@ TEST_P(EveryStagesHessian, ReadsNoOutputsWithinAStep) {
   StagePoint<double> point(model);
   History(model).set_point(trajectory, stage, point);
   const VectorXd z = random.vector(n);
-  hessian.evaluate(trajectory, stage, z, nullptr);
-  expect_exact(point, z, nullptr);
-  EXPECT_EQ(testing::largest(hessian.uq), 0.0);
-  EXPECT_EQ(testing::largest(hessian.uv), 0.0);
+  const StageCurvature& h = hessian.evaluate(trajectory, stage, z, nullptr);
+  expect_exact(h, point, z, nullptr);
+  EXPECT_EQ(testing::largest(h.uq), 0.0);
+  EXPECT_EQ(testing::largest(h.uv), 0.0);
 }
 
 TEST_P(EveryStagesHessian, OfTheStartIsOfOutputsAlone) {
@@ -202,14 +203,14 @@ TEST_P(EveryStagesHessian, OfTheStartIsOfOutputsAlone) {
   point.q = trajectory.q.col(0);
   point.qdot = trajectory.qdot.col(0);
   point.u = trajectory.inputs.u.col(0);
-  const OutputRows<double> y = random_rows();
+  const VectorXd y = random_rows();
   hessian.evaluate(trajectory, 1, random.vector(n), &y);  // leaves nothing behind
-  hessian.evaluate_start(trajectory, y);
-  expect_exact(point, VectorXd(), &y);
-  EXPECT_EQ(testing::largest(hessian.qa), 0.0);
-  EXPECT_EQ(testing::largest(hessian.da), 0.0);
-  EXPECT_EQ(testing::largest(hessian.dsq), 0.0);
-  EXPECT_GT(testing::largest(hessian.qq), 0.0);
+  const StageCurvature& h = hessian.evaluate_start(trajectory, y);
+  expect_exact(h, point, VectorXd(), &y);
+  EXPECT_EQ(testing::largest(h.qa), 0.0);
+  EXPECT_EQ(testing::largest(h.da), 0.0);
+  EXPECT_EQ(testing::largest(h.dsq), 0.0);
+  EXPECT_GT(testing::largest(h.qq), 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, EveryStagesHessian, ::testing::Values(1U, 2U));

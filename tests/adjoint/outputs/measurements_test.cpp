@@ -4,6 +4,7 @@
 
 #include "hbar/core/base/rotation.h"
 #include "hbar/core/dynamics/joint_forces.h"
+#include "hbar/core/parameters/parameter_kinds.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random_model.h"
 
@@ -45,6 +46,9 @@ std::vector<Measurement> every_measurement(const Model& model, Random& random) {
   }
   out.emplace_back(CentreOfMass{"centre"});
   out.emplace_back(LinearMomentum{"momentum"});
+  for (const Measurement& own : model_measurements(model)) {
+    out.push_back(own);
+  }
   return out;
 }
 
@@ -55,19 +59,26 @@ class EveryModelsMeasurements : public ::testing::TestWithParam<unsigned> {
                          const VectorX<S>& values) const {
     auto numbers = nominal_mechanism<S>(model);
     apply_parameters<S>(model, set, values, numbers);
-    Motion<S> moving(model.tree());
-    compute_motion<S>(model.tree(), numbers, q, qdot, VectorX<S>::Zero(model.dof()), moving);
     Measurements<S> measured(model, declared);
+    InstantMotion<S> instants(model, measured.reads_contacts());
+    const Applied<S> applied{numbers, set, values};
+    const Instant<S> at = instants.at(applied, q, qdot, controls);
+    measured.linearize(at);
     VectorX<S> out = VectorX<S>::Constant(measured.size(), S(7.0));
-    measured.readings(numbers, moving, q, qdot, controls, out);
+    measured.read(at, out);
     return out;
   }
   /// The readings here; also moves `mechanism` and `motion`.
   VectorXd readings() {
     apply_parameters<double>(model, set, p, mechanism);
     compute_motion<double>(model.tree(), mechanism, state.q, state.qdot, state.a, motion);
+    ContactForces<double> contacts(model);
+    contacts.linearize(mechanism, motion);
+    const Applied<double> applied{mechanism, set, p};
+    const Instant<double> at{applied, motion, &contacts, state.q, state.qdot, u};
+    measurements.linearize(at);
     VectorXd out = VectorXd::Zero(measurements.size());
-    measurements.readings(mechanism, motion, state.q, state.qdot, u, out);
+    measurements.read(at, out);
     return out;
   }
   Eigen::Index row(const std::string& name) const {
@@ -98,12 +109,15 @@ class EveryModelsMeasurements : public ::testing::TestWithParam<unsigned> {
     const VectorX<S> values = x.tail(set.size());
     auto numbers = nominal_mechanism<S>(model);
     apply_parameters<S>(model, set, values, numbers);
-    Motion<S> moving(model.tree());
-    compute_motion<S>(model.tree(), numbers, q, qdot, VectorX<S>::Zero(n), moving);
     Measurements<S> measured(model, declared);
+    InstantMotion<S> instants(model, measured.reads_contacts());
+    const Applied<S> applied{numbers, set, values};
+    const Instant<S> at = instants.at(applied, q, qdot, controls);
     VectorX<S> out = before;
-    measured.pull_back(numbers, set, values, moving, q, qdot, controls, y, out.head(n),
-                       out.segment(n, n), out.segment(2 * n, u.size()), out.tail(set.size()));
+    InstantGradient<S> by{out.head(n), out.segment(n, n), out.segment(2 * n, u.size()),
+                          out.tail(set.size())};
+    measured.linearize(at);
+    measured.pull_back(at, y, by);
     return out;
   }
   void move() {
@@ -277,7 +291,8 @@ TEST_P(EveryModelsMeasurements, DependOnEveryParameterThatTheirFormulasHold) {
     move();
     const VectorXd gradient = pulled_back<double>(everything(), random.vector(measurements.size()),
                                                   VectorXd::Zero(everything().size()));
-    for (const ParameterKind kind : parameter_kinds()) {
+    for (const ParameterKindRow& kinds : parameter_kinds()) {
+      const ParameterKind kind = kinds.kind;
       double found = 0.0;
       for (int k = 0; k < set.size(); ++k) {
         found =
@@ -315,18 +330,48 @@ TEST_P(EveryModelsMeasurements, HaveARemainderOfSecondOrder) {
   EXPECT_NEAR(testing::taylor_slope(along, slope, 3e-3), 2.0, 0.05);
 }
 
+TEST_P(EveryModelsMeasurements, AddNothingForRowsWithoutWeight) {
+  const VectorXd x = everything();
+  const VectorXd before = random.vector(x.size());
+  VectorXd y = VectorXd::Zero(measurements.size());
+  EXPECT_EQ(pulled_back<double>(x, y, before), before);
+  y[0] = 1.0;
+  EXPECT_NE(pulled_back<double>(x, y, before), before);
+}
+
+/// Weights that are zero but move count: the rate of Jᵀ y is Jᵀ δy there.
+TEST_P(EveryModelsMeasurements, TakeWeightsThatOnlyMove) {
+  const VectorXd x = everything();
+  const VectorXd y = random.vector(measurements.size());
+  const VectorX<Dual> moving = testing::with_slope(VectorXd(VectorXd::Zero(y.size())), y);
+  const VectorX<Dual> none = VectorX<Dual>::Constant(x.size(), Dual(0.0));
+  const VectorX<Dual> product = pulled_back<Dual>(x.cast<Dual>(), moving, none);
+  const VectorXd expected = pulled_back<double>(x, y, VectorXd::Zero(x.size()));
+  EXPECT_LT(relative_gap(testing::slopes(product), expected), 1e-14);
+  EXPECT_EQ(largest(testing::values(product)), 0.0);
+}
+
+TEST_P(EveryModelsMeasurements, OfSensorsAreWhatTheirPointsRead) {
+  const VectorXd found = readings();
+  TactileReadings<double> tactile(model);
+  tactile.linearize(mechanism, motion);
+  for (int i = 0; i < static_cast<int>(model.tactile_sensors().size()); ++i) {
+    const TactileSensor& sensor = model.tactile_sensors()[static_cast<std::size_t>(i)];
+    VectorXd expected(3 * sensor.points.cols());
+    tactile.read(i, expected);
+    EXPECT_EQ(found.segment(row(sensor.name + ".0.shear0"), expected.size()), expected);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, EveryModelsMeasurements, ::testing::Values(1U, 2U, 3U));
 
 TEST(Measurements, AreNoneWhereNoneAreDeclared) {
   const Model model = testing::random_model(1);
   Measurements<double> measurements(model, {});
   EXPECT_EQ(measurements.size(), 0);
+  EXPECT_TRUE(measurements.empty());
   EXPECT_TRUE(measurements.names().empty());
-}
-
-TEST(Measurements, AreRefusedWhereTheModelCannotHaveThem) {
-  const Model model = testing::random_model(1);
-  EXPECT_THROW(Measurements<double>(model, {PointVelocity{"tip", 99}}), InvalidInput);
+  EXPECT_FALSE(Measurements<double>(model, model_measurements(model)).empty());
 }
 
 }  // namespace

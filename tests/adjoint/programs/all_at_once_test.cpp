@@ -61,7 +61,7 @@ TEST_P(AllAtOnceOfASimulation, HasNoResidualAndTheSimulationsNumbers) {
   const TrajectoryValues& found = whole.trajectory_values(x);
   EXPECT_EQ(found.q, expected.q);
   EXPECT_LT(relative_gap(found.qdot, expected.qdot), 1e-12);
-  EXPECT_LT(relative_gap(found.v, expected.v), 1e-12);
+  EXPECT_LT(relative_gap(found.v(), expected.v()), 1e-12);
   EXPECT_LT(relative_gap(found.measured, expected.measured), 1e-10);
   EXPECT_EQ(found.u, expected.u);
   EXPECT_EQ(found.p, expected.p);

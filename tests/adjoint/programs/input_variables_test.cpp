@@ -194,7 +194,9 @@ TEST(InputVariables, RefuseTermsThatReadBeyondTheTrajectory) {
   EXPECT_EQ(message_of<InvalidInput>([&] { head.require_places(*reading(ValueField::kU, 0, 7)); }),
             "constraint 'row at step 7' reads u 0 at step 7; there are 1 x 7 of u");
   EXPECT_THROW(head.require_places(*reading(ValueField::kQ, 2, 0)), InvalidInput);
-  EXPECT_THROW(head.require_places(*reading(ValueField::kMeasured, 0, 0)), InvalidInput);
+  EXPECT_THROW(
+      head.require_places(*reading(ValueField::kMeasured, problem.horizon.measured_count(), 0)),
+      InvalidInput);
   EXPECT_THROW(head.require_places(*reading(ValueField::kP, 5, 0)), InvalidInput);
 }
 

@@ -95,7 +95,8 @@ TEST_F(LoadProblem, SensorsMayBeAnObjectiveAndAreNeverTheUsualOne) {
   const LoadedProblem asked = load_problem(file, options);
   EXPECT_EQ(asked.objective, ObjectiveChoice::kTactile);
   TrajectoryValues values;
-  values.tactile = Eigen::MatrixXd::Constant(18, 3, 2.0);
+  values.measured = Eigen::MatrixXd::Constant(18, 3, 2.0);
+  values.measured_rows = {0, 18};
   values.q = Eigen::MatrixXd::Constant(1, 3, 7.0);
   EXPECT_EQ(asked.problem.objective.value(values), 0.5 * 2 * 18 * 4.0);  // the start is no step
   try {

@@ -54,8 +54,7 @@ class SegmentOfEveryIntegrator : public ::testing::TestWithParam<std::string> {
   [[nodiscard]] TrajectoryPartials random_weights(unsigned seed) const {
     Random random(seed);
     TrajectoryPartials out(segment.values());
-    for (Eigen::MatrixXd* field :
-         {&out.q, &out.qdot, &out.v, &out.tactile, &out.measured, &out.u}) {
+    for (Eigen::MatrixXd* field : {&out.q, &out.qdot, &out.measured, &out.u}) {
       *field = random.matrix(field->rows(), field->cols());
     }
     out.p = random.vector(out.p.size());
@@ -104,7 +103,7 @@ TEST_P(SegmentOfEveryIntegrator, HasTheValuesOfTheWhole) {
   EXPECT_LT(relative_gap(segment.values().q, values.q.middleCols(kBegin, kLength + 1)), 1e-11);
   EXPECT_LT(relative_gap(segment.values().qdot, values.qdot.middleCols(kBegin, kLength + 1)),
             1e-11);
-  EXPECT_LT(relative_gap(segment.values().v, values.v.middleCols(kBegin, kLength + 1)), 1e-11);
+  EXPECT_LT(relative_gap(segment.values().v(), values.v().middleCols(kBegin, kLength + 1)), 1e-11);
   // The first measurement reads the control that begins to act there, all others that which ends.
   EXPECT_LT(relative_gap(segment.values().measured.rightCols(kLength),
                          values.measured.middleCols(kBegin + 1, kLength)),
@@ -138,7 +137,6 @@ TEST_P(SegmentOfEveryIntegrator, HasTheTangentsOfTheWhole) {
   };
   expect_same(mine.q, whole.q);
   expect_same(mine.qdot, whole.qdot);
-  expect_same(mine.v, whole.v);
   expect_same(mine.measured, whole.measured);
 }
 
@@ -150,7 +148,6 @@ TEST_P(SegmentOfEveryIntegrator, PullsBackByTheTransposeOfItsTangents) {
   weights.p.setZero();
   const Eigen::VectorXd expected = tangents.q.transpose() * weights.q.reshaped() +
                                    tangents.qdot.transpose() * weights.qdot.reshaped() +
-                                   tangents.v.transpose() * weights.v.reshaped() +
                                    tangents.measured.transpose() * weights.measured.reshaped();
   EXPECT_LT(relative_gap(by_variables(segment.pull_back(weights)), expected), 1e-10);
 }

@@ -38,16 +38,19 @@ namespace hbar::testing {
   const int blocks = (steps + 2) / 3;
   out.controls.start = problem.inputs.u.leftCols(blocks);
   out.objective.add(control_smoothness(0.1)).add(squared_measured(0.02));
-  out.objective.add(generic_term(
-      "gait",
-      {{ValueField::kQ, steps, 6}, {ValueField::kV, steps - 1, 1}, {ValueField::kQdot, 2, 6}},
-      [](const auto& x) { return x[0] * x[1] * x[2]; }));
+  out.objective.add(generic_term("gait",
+                                 {{ValueField::kQ, steps, 6},
+                                  {ValueField::kMeasured, steps - 1, 1},
+                                  {ValueField::kQdot, 2, 6}},
+                                 [](const auto& x) { return x[0] * x[1] * x[2]; }));
   out.constraints = {
       variable_limits(model, model.end_effectors()[0].name, {0, 3, steps},
                       Eigen::Vector3d::Constant(-3.0), Eigen::Vector3d::Constant(3.0)),
       rate_limits(model, 6, step_range(1, steps, 3), -5.0, 5.0), periodicity(model, steps, {6}),
       coordinate_limits(model, 7, {0, steps}, -3.0, 3.0)};
-  for (int row = 0; row < out.horizon.measured_count(); ++row) {
+  const MeasuredRows& own = out.horizon.measured_rows();
+  for (int row = static_cast<int>(own.variables + own.tactile); row < out.horizon.measured_count();
+       ++row) {
     out.constraints.push_back(
         value_limits(concat("measured ", row), ValueField::kMeasured, row, {0, 4}, -90.0, 90.0));
   }

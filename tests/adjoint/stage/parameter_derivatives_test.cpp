@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "hbar/core/parameters/parameter_kinds.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random_model.h"
 
@@ -26,7 +27,7 @@ class EveryModelsParameters : public ::testing::TestWithParam<unsigned> {
   }
   MatrixXd columns() const {
     MatrixXd out = MatrixXd::Zero(model.dof(), set.size());
-    parameter_columns<double>(mechanism, set, p, stage, point, out);
+    parameter_columns<double>({mechanism, set, p}, stage, point, out);
     return out;
   }
   VectorXd residual_at(const VectorXd& values) {
@@ -51,7 +52,8 @@ class EveryModelsParameters : public ::testing::TestWithParam<unsigned> {
   }
   /// Expects each kind's columns to agree, relative to the largest entry of that kind.
   void expect_kinds_agree(const MatrixXd& found, const MatrixXd& expected, double tolerance) const {
-    for (const ParameterKind kind : parameter_kinds()) {
+    for (const ParameterKindRow& row_of_kind : parameter_kinds()) {
+      const ParameterKind kind = row_of_kind.kind;
       std::vector<int> mine;
       for (int i = 0; i < set.size(); ++i) {
         if (set[i].kind == kind) {
@@ -115,7 +117,7 @@ TEST_P(EveryModelsParameters, HaveAGradientThatIsTheTransposeOfTheirColumns) {
     stage.pull_back(z);
     const VectorXd before = random.vector(set.size());
     VectorXd gradient = before;
-    add_parameter_gradient<double>(mechanism, set, p, stage, point, z, -2.5, gradient);
+    add_parameter_gradient<double>({mechanism, set, p}, stage, point, z, -2.5, gradient);
     const VectorXd expected = -2.5 * columns().transpose() * z;
     EXPECT_LT(testing::largest((gradient - before - expected).eval()),
               1e-13 * (testing::largest(expected) + 1.0));
@@ -168,7 +170,7 @@ TEST_P(EveryModelsParameters, TouchExactlyTheRowsTheyOwn) {
 TEST_P(EveryModelsParameters, LeaveOtherRowsAlone) {
   linearize();
   MatrixXd out = MatrixXd::Constant(model.dof(), set.size(), 123.0);
-  parameter_columns<double>(mechanism, set, p, stage, point, out);
+  parameter_columns<double>({mechanism, set, p}, stage, point, out);
   for (const ParameterBlock& block : set.blocks()) {
     const std::vector<int> rows = parameter_rows(model, block);
     for (int l = 0; l < model.dof(); ++l) {
@@ -196,7 +198,7 @@ TEST_P(EveryModelsParameters, KeepTheirDerivativesInASmallerSet) {
   VectorXd g = VectorXd::Zero(model.dof());
   stage.linearize(mechanism, point, g);
   MatrixXd out = MatrixXd::Zero(model.dof(), few.size());
-  parameter_columns<double>(mechanism, few, p_few, stage, point, out);
+  parameter_columns<double>({mechanism, few, p_few}, stage, point, out);
   const MatrixXd every = columns();
   for (int i = 0; i < few.size(); ++i) {
     EXPECT_EQ(out.col(i), every.col(set.find(few[i].name))) << few[i].name;

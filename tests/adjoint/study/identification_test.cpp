@@ -159,8 +159,9 @@ class IdentificationOfSmallProblem : public ::testing::Test {
   IdentificationOfSmallProblem() {
     data_.data.resize(6);
     data_.data << 0.1, -0.2, 0.3, 0.4, 0.5, 0.1;
-    data_.places = {{ValueField::kQ, 3, 1}, {ValueField::kQdot, 5, 2}, {ValueField::kV, 4, 1},
-                    {ValueField::kU, 2, 0}, {ValueField::kP, 0, 3},    {ValueField::kQ, 3, 1}};
+    data_.places = {{ValueField::kQ, 3, 1},        {ValueField::kQdot, 5, 2},
+                    {ValueField::kMeasured, 4, 1}, {ValueField::kU, 2, 0},
+                    {ValueField::kP, 0, 3},        {ValueField::kQ, 3, 1}};
     data_.column.assign(6, 0);
     data_.names = {"all"};
   }
@@ -174,8 +175,8 @@ class IdentificationOfSmallProblem : public ::testing::Test {
     return measured(read_values(problem_.horizon, simulate(problem_.horizon, inputs).trajectory()));
   }
   [[nodiscard]] static Eigen::VectorXd measured(const TrajectoryValues& values) {
-    return (Eigen::VectorXd(6) << values.q(1, 3), values.qdot(2, 5), values.v(1, 4), values.u(0, 2),
-            values.p[3], values.q(1, 3))
+    return (Eigen::VectorXd(6) << values.q(1, 3), values.qdot(2, 5), values.v()(1, 4),
+            values.u(0, 2), values.p[3], values.q(1, 3))
         .finished();
   }
   Problem problem_ = small_problem("bdf2");
@@ -210,7 +211,7 @@ TEST_F(IdentificationOfSmallProblem, HasATermWithExactDerivatives) {
   TrajectoryPartials partials(values);
   term->add_partials(values, partials);
   EXPECT_NEAR(partials.q(1, 3), 3.0 * (gap[0] / sigma[0] + gap[5] / sigma[5]), 1e-13);
-  EXPECT_NEAR(partials.v(1, 4), 3.0 * gap[2] / sigma[2], 1e-13);
+  EXPECT_NEAR(partials.v()(1, 4), 3.0 * gap[2] / sigma[2], 1e-13);
   EXPECT_NEAR(partials.p[3], 3.0 * gap[4] / sigma[4], 1e-13);
   EXPECT_EQ((partials.q.array() != 0.0).count(), 1);
 

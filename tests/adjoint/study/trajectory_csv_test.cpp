@@ -15,9 +15,7 @@ namespace {
 TrajectoryNames arm_names() {
   return {.q = {"hinge", "slider"},
           .qdot = {"rate.hinge", "rate.slider"},
-          .v = {"tip.x", "tip.y", "tip.z"},
-          .tactile = {},
-          .measured = {"power"},
+          .measured = {"tip.x", "tip.y", "tip.z", "power"},
           .u = {"control.hinge"}};
 }
 
@@ -38,8 +36,8 @@ TEST(TrajectoryCsv, IsReadAsItIsWritten) {
   const std::string text = trajectory_csv(names, values);
   const TrajectoryData data = read_trajectory_csv(
       text, "t.csv", names, {.h = values.h, .steps = static_cast<int>(values.u.cols())});
-  EXPECT_EQ(data.data.size(), values.q.size() + values.qdot.size() + values.v.size() +
-                                  values.tactile.size() + values.u.size());
+  EXPECT_EQ(data.data.size(),
+            values.q.size() + values.qdot.size() + values.measured.size() + values.u.size());
   for (std::size_t i = 0; i < data.places.size(); ++i) {
     EXPECT_EQ(data.data[static_cast<Eigen::Index>(i)], value_at(values, data.places[i]));
   }
@@ -51,10 +49,13 @@ TEST(TrajectoryCsv, NamesSensorReadingsAndMeasurements) {
   const Horizon horizon(testing::contact_model(), ParameterSet(), options);
   const Model& model = horizon.model();
   const TrajectoryNames names = trajectory_names(horizon);
-  EXPECT_EQ(static_cast<int>(names.tactile.size()), model.tactile_count());
-  EXPECT_EQ(names.tactile[4], "skin.1.shear1");
-  EXPECT_EQ(names.v[3], "tip.x");
-  EXPECT_EQ(names.measured,
+  const auto variables = static_cast<std::size_t>(model.variable_count());
+  const auto readings = static_cast<std::size_t>(model.tactile_count());
+  EXPECT_EQ(names.measured[3], "tip.x");
+  EXPECT_EQ(names.measured[variables + 4], "skin.1.shear1");
+  EXPECT_EQ(std::vector<std::string>(
+                names.measured.begin() + static_cast<std::ptrdiff_t>(variables + readings),
+                names.measured.end()),
             (std::vector<std::string>{"centre.x", "centre.y", "centre.z", "power"}));
 }
 
@@ -64,11 +65,11 @@ TEST(TrajectoryCsv, MayMeasureSomeNumbersAtSomeSteps) {
       "0.1,1,,3,7\n0.3000000001,,5,,\n1,8,,,9\n");
   ASSERT_EQ(data.data.size(), 6);
   EXPECT_EQ(data.data, (Eigen::VectorXd(6) << 1, 3, 7, 5, 8, 9).finished());
-  EXPECT_EQ(data.places[0], (ValuePlace{ValueField::kV, 1, 2}));
-  EXPECT_EQ(data.places[1], (ValuePlace{ValueField::kMeasured, 1, 0}));
+  EXPECT_EQ(data.places[0], (ValuePlace{ValueField::kMeasured, 1, 2}));
+  EXPECT_EQ(data.places[1], (ValuePlace{ValueField::kMeasured, 1, 3}));
   EXPECT_EQ(data.places[2], (ValuePlace{ValueField::kU, 0, 0}));
   EXPECT_EQ(data.places[3], (ValuePlace{ValueField::kQdot, 3, 1}));
-  EXPECT_EQ(data.places[4], (ValuePlace{ValueField::kV, 10, 2}));
+  EXPECT_EQ(data.places[4], (ValuePlace{ValueField::kMeasured, 10, 2}));
   EXPECT_EQ(data.places[5], (ValuePlace{ValueField::kU, 9, 0}));
   EXPECT_EQ(data.by_column(Eigen::Vector4d(1.0, 2.0, 3.0, 4.0)),
             (Eigen::VectorXd(6) << 1, 3, 4, 2, 1, 4).finished());

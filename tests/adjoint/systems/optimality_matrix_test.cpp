@@ -41,13 +41,16 @@ Eigen::MatrixXd variables_by_q(const Horizon& horizon, const Trajectory& traject
   const int variables = model.variable_count();
   const Mechanism<double> mechanism = nominal_mechanism<double>(model);
   Motion<double> motion(model.tree());
-  EndEffectors<double> end_effectors(model);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(n);
   Eigen::MatrixXd E = Eigen::MatrixXd::Zero(stages * variables, stages * n);
   const auto positions = [&](const Eigen::VectorXd& q) {
     Eigen::VectorXd v(variables);
     compute_motion<double>(model.tree(), mechanism, q, none, none, motion);
-    end_effectors.positions(motion, v);
+    for (std::size_t i = 0; i < model.end_effectors().size(); ++i) {
+      const EndEffector& point = model.end_effectors()[i];
+      const NodeMotion<double>& node = motion.at(model.node_of_link(point.link));
+      v.segment<3>(3 * static_cast<Eigen::Index>(i)) = node.p + node.R * point.position;
+    }
     return v;
   };
   for (int s = 1; s <= stages; ++s) {

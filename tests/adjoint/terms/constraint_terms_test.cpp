@@ -23,8 +23,8 @@ class ConstraintTerms : public ::testing::Test {
     values_.h = 0.1;
     values_.q = random.matrix(model_.dof(), kConstrainedSteps + 1);
     values_.qdot = random.matrix(model_.dof(), kConstrainedSteps + 1);
-    values_.v = random.matrix(model_.variable_count(), kConstrainedSteps + 1);
-    values_.measured = random.matrix(2, kConstrainedSteps + 1);
+    values_.measured_rows = {model_.variable_count(), 0};
+    values_.measured = random.matrix(model_.variable_count() + 2, kConstrainedSteps + 1);
     values_.u = random.matrix(model_.control_count(), kConstrainedSteps);
     values_.p = set_.nominal();
   }
@@ -73,8 +73,8 @@ TEST_F(ConstraintTerms, OnAPathAreABoxWithoutItsOpenSides) {
                                                  {1.0, kInfinity, kInfinity});
   ASSERT_EQ(term->rows().size(), 4);
   EXPECT_EQ(term->rows().names[3], "corner.z at step 4");
-  EXPECT_EQ(checked(term),
-            Eigen::Vector4d(values_.v(3, 1), values_.v(5, 1), values_.v(3, 4), values_.v(5, 4)));
+  EXPECT_EQ(checked(term), Eigen::Vector4d(values_.v()(3, 1), values_.v()(5, 1), values_.v()(3, 4),
+                                           values_.v()(5, 4)));
 }
 
 TEST_F(ConstraintTerms, OnChangesOfControlsReadTwoStepsEach) {

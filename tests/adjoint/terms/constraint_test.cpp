@@ -25,10 +25,13 @@ TrajectoryValues numbered(const Model& model, const ParameterSet& set, int steps
   };
   out.q = fill(model.dof(), steps + 1, 1.0);
   out.qdot = fill(model.dof(), steps + 1, 2.0);
-  out.v = fill(model.variable_count(), steps + 1, 3.0);
   out.u = fill(model.control_count(), steps, 4.0);
   out.p = set.nominal();
-  out.measured = fill(2, steps + 1, 5.0);
+  out.measured_rows = {model.variable_count(), 1};
+  out.measured.resize(model.variable_count() + 3, steps + 1);
+  out.v() = fill(model.variable_count(), steps + 1, 3.0);
+  out.tactile().setConstant(4.0);
+  out.declared() = fill(2, steps + 1, 5.0);
   return out;
 }
 
@@ -53,7 +56,7 @@ TEST_F(Constraint, OnAnEndEffectorIsABoxAroundTheTarget) {
   EXPECT_EQ(term->rows().upper, Eigen::Vector3d(1.25, 2.25, 3.25));
   Eigen::VectorXd c(3);
   term->values(values_, c);
-  EXPECT_EQ(c, values_.v.col(3).segment(3, 3));
+  EXPECT_EQ(c, values_.v().col(3).segment(3, 3));
   expect_right_partials(*term, values_);
   const ConstraintPointer equation = variable_at_step(model_, "tip", 1, {1.0, 2.0, 3.0});
   EXPECT_EQ(equation->rows().lower, equation->rows().upper);
@@ -93,14 +96,17 @@ TEST_F(Constraint, OnParametersIsAWeightedSum) {
 
 TEST_F(Constraint, ThatIsLinearIsAnyWeightedSumOfNumbers) {
   const ConstraintRows rows{{"a", "b"}, Eigen::Vector2d::Zero(), Eigen::Vector2d::Ones()};
-  const ConstraintPointer term = linear_constraint(
-      rows, {{1, Field::kMeasured, 3, 1}, {0, Field::kU, 2, 0}, {1, Field::kTactile, 3, 0}},
-      Eigen::Vector3d(2.0, -1.0, 0.5), Eigen::Vector2d(0.0, 7.0));
-  values_.tactile = Eigen::MatrixXd::Constant(1, 6, 4.0);
+  const int readings = model_.variable_count();  // their first row
+  const ConstraintPointer term =
+      linear_constraint(rows,
+                        {{1, Field::kMeasured, 3, readings + 2},
+                         {0, Field::kU, 2, 0},
+                         {1, Field::kMeasured, 3, readings}},
+                        Eigen::Vector3d(2.0, -1.0, 0.5), Eigen::Vector2d(0.0, 7.0));
   Eigen::VectorXd c(2);
   term->values(values_, c);
   EXPECT_DOUBLE_EQ(c[0], -values_.u(0, 2));
-  EXPECT_DOUBLE_EQ(c[1], 7.0 + 2.0 * values_.measured(1, 3) + 2.0);
+  EXPECT_DOUBLE_EQ(c[1], 7.0 + 2.0 * values_.declared()(1, 3) + 2.0);
   expect_right_partials(*term, values_);
   EXPECT_TRUE(term->second_places().empty());
   EXPECT_THROW(static_cast<void>(linear_constraint(rows, {}, Eigen::VectorXd::Ones(1))),
@@ -114,10 +120,10 @@ TEST_F(Constraint, ThatIsLinearIsAnyWeightedSumOfNumbers) {
 TEST_F(Constraint, ThatReadsANumberThatIsNotThereSaysWhich) {
   const ConstraintRows rows{{"a"}, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)};
   const ConstraintPointer term =
-      linear_constraint(rows, {{0, Field::kMeasured, 3, 2}}, Eigen::VectorXd::Ones(1));
+      linear_constraint(rows, {{0, Field::kMeasured, 3, 9}}, Eigen::VectorXd::Ones(1));
   Eigen::VectorXd c(1);
   EXPECT_EQ(testing::message_of<InvalidInput>([&] { term->values(values_, c); }),
-            "there is no measured 2 at step 3: measured is 2 x 6");
+            "there is no measured 9 at step 3: measured is 9 x 6");
 }
 
 /// u q̇ ≤ 1 written by hand.

@@ -77,7 +77,7 @@ TEST(GenericConstraint, IsExactToItsSecondPartials) {
        {"wild",
         0.0,
         2.0,
-        {{ValueField::kQ, 5, 1}, {ValueField::kU, 2, 0}, {ValueField::kTactile, 1, 1}},
+        {{ValueField::kQ, 5, 1}, {ValueField::kU, 2, 0}, {ValueField::kMeasured, 1, 7}},
         kWild}});
   EXPECT_EQ(term->rows().names[1], "wild");
   EXPECT_EQ(term->rows().upper, Eigen::Vector2d(1.0, 2.0));

@@ -26,14 +26,15 @@ std::vector<TermPointer> every_term() {
           squared_tactile(0.4),
           squared_tactile(0.4, uneven()),
           squared_measured(0.9),
-          squared_measured(0.9, {2, 0}, uneven()),
+          squared_measured(0.9, {11, 9}, uneven()),
           squared_final_position(0.5),
           tracking(random.matrix(4, 5), 2.0),
           tracking(random.vector(4), 2.0, uneven()),
           variable_tracking(random.matrix(6, 5), 0.7),
           variable_tracking(random.vector(6), 0.7, uneven()),
-          measured_tracking({1}, random.matrix(1, 5), 1.3, uneven()),
-          tracking_of(ValueField::kTactile, {}, random.vector(3), 0.8),
+          measured_tracking({10}, random.matrix(1, 5), 1.3, uneven()),
+          measured_tracking({}, random.matrix(3, 5), 1.3),
+          tracking_of(ValueField::kMeasured, {6, 7, 8}, random.vector(3), 0.8),
           tracking_of(ValueField::kU, {1}, random.matrix(1, 5), 0.8, uneven()),
           terminal_state(random.vector(4), random.vector(4), 1.2, 0.3),
           terminal_state(random.vector(4), random.vector(4), 1.2, 0.0),
@@ -43,11 +44,11 @@ std::vector<TermPointer> every_term() {
           squared_velocity(1.1, uneven()),
           control_smoothness(0.2),
           control_smoothness(0.2, uneven()),
-          work({0, 2}, 0.5, 1.7),
-          work({1}, 0.5, 1.7, uneven()),
-          net_work({0, 2}, 1.7),
+          work({9, 11}, 0.5, 1.7),
+          work({10}, 0.5, 1.7, uneven()),
+          net_work({9, 11}, 1.7),
           time_integral(ValueField::kQdot, {3}, -0.6, uneven()),
-          final_number(ValueField::kV, 4, -2.0),
+          final_number(ValueField::kMeasured, 4, -2.0),
           final_number(ValueField::kU, 1, 2.0),
           weighted_numbers("price", {{ValueField::kP, 0, 1}, {ValueField::kQ, 3, 2}},
                            Eigen::Vector2d(0.7, -0.2)),
@@ -96,12 +97,12 @@ TEST(Terms, HaveTheValuesOfTheirFormulas) {
   values.h = 0.5;
   values.q.setConstant(3.0);
   values.qdot.setConstant(-2.0);
-  values.v.setConstant(0.5);
+  values.v().setConstant(0.5);
   values.u.setConstant(4.0);
   // What happens at k = 0 is given, not caused: it counts nowhere.
   values.q.col(0).setConstant(1e3);
   values.qdot.col(0).setConstant(1e3);
-  values.v.col(0).setConstant(1e3);
+  values.v().col(0).setConstant(1e3);
   EXPECT_DOUBLE_EQ(squared_variables(2.0)->value(values), 5 * 6 * 0.25);
   EXPECT_DOUBLE_EQ(squared_final_position(2.0)->value(values), 4 * 9.0);
   EXPECT_DOUBLE_EQ(tracking(VectorXd::Constant(4, 1.0), 2.0)->value(values), 5 * 4 * 4.0);
@@ -120,15 +121,15 @@ TEST(Terms, OfChangesAndMeasurementsHaveTheValuesOfTheirFormulas) {
   values.u.row(1).setConstant(7.0);
   EXPECT_DOUBLE_EQ(control_smoothness(2.0)->value(values), (1.0 + 4.0) / 0.5);
   EXPECT_DOUBLE_EQ(control_smoothness(2.0, uneven())->value(values), (1.0 * 1.0 + 0.0) / 0.5);
-  values.measured.row(0) << 1e3, 4.0, -4.0, 0.0, 4.0, -4.0;
-  values.measured.row(1).setConstant(1e3);
-  EXPECT_DOUBLE_EQ(work({0}, 3.0, 2.0)->value(values), 2.0 * 0.5 * 4 * (5.0 - 3.0));
-  EXPECT_NEAR(work({0}, 1e-9)->value(values), 0.5 * 16.0, 1e-8);
-  EXPECT_DOUBLE_EQ(net_work({0}, 2.0)->value(values), 0.0);
-  EXPECT_DOUBLE_EQ(net_work({1}, 2.0)->value(values), 2.0 * 0.5 * 5e3);
-  EXPECT_DOUBLE_EQ(measured_tracking({0}, MatrixXd::Constant(1, 1, 4.0), 2.0)->value(values),
+  values.declared().row(0) << 1e3, 4.0, -4.0, 0.0, 4.0, -4.0;
+  values.declared().row(1).setConstant(1e3);
+  EXPECT_DOUBLE_EQ(work({9}, 3.0, 2.0)->value(values), 2.0 * 0.5 * 4 * (5.0 - 3.0));
+  EXPECT_NEAR(work({9}, 1e-9)->value(values), 0.5 * 16.0, 1e-8);
+  EXPECT_DOUBLE_EQ(net_work({9}, 2.0)->value(values), 0.0);
+  EXPECT_DOUBLE_EQ(net_work({10}, 2.0)->value(values), 2.0 * 0.5 * 5e3);
+  EXPECT_DOUBLE_EQ(measured_tracking({9}, MatrixXd::Constant(1, 1, 4.0), 2.0)->value(values),
                    64.0 + 16.0 + 64.0);
-  EXPECT_DOUBLE_EQ(final_number(ValueField::kMeasured, 0, -3.0)->value(values), 12.0);
+  EXPECT_DOUBLE_EQ(final_number(ValueField::kMeasured, 9, -3.0)->value(values), 12.0);
   EXPECT_DOUBLE_EQ(final_number(ValueField::kU, 0, 2.0)->value(values), 6.0);
   EXPECT_DOUBLE_EQ(time_integral(ValueField::kU, {0}, 1.0)->value(values), 5.0);
 }
@@ -168,7 +169,7 @@ TEST(Terms, RefuseATargetOfAnotherShape) {
             "tracking: target of q is 3 x 5; it must be 4 x 5 or 4 x 1");
   const TermPointer late = variable_tracking(MatrixXd::Zero(6, 6));
   EXPECT_EQ(message_of<InvalidInput>([&] { static_cast<void>(late->value(values)); }),
-            "variable_tracking: target of v is 6 x 6; it must be 6 x 5 or 6 x 1");
+            "variable_tracking: target of measured is 6 x 6; it must be 6 x 5 or 6 x 1");
   const TermPointer state = terminal_state(VectorXd::Zero(4), VectorXd::Zero(3), 1.0, 1.0);
   EXPECT_EQ(message_of<InvalidInput>([&] { static_cast<void>(state->value(values)); }),
             "terminal_state: target of qdot is 3 x 1; it must be 4 x 1");
@@ -184,7 +185,7 @@ TEST(Terms, RefuseAWeightThatIsNegativeOrNotFinite) {
            [](double w) { return squared_measured(w); }, squared_final_position,
            [](double w) { return effort(w); }, [](double w) { return squared_velocity(w); },
            [](double w) { return control_smoothness(w); },
-           [](double w) { return work({0}, 0.1, w); }, [](double w) { return net_work({0}, w); },
+           [](double w) { return work({9}, 0.1, w); }, [](double w) { return net_work({9}, w); },
            [](double w) { return measured_tracking({}, VectorXd::Zero(3), w); },
            [](double w) { return tracking(VectorXd::Zero(4), w); },
            [](double w) { return variable_tracking(VectorXd::Zero(6), w); },
@@ -198,11 +199,11 @@ TEST(Terms, RefuseAWeightThatIsNegativeOrNotFinite) {
 
 TEST(Terms, RefuseRowsAndNumbersThatMakeNoSense) {
   const TrajectoryValues values = testing::random_values(4);
-  const TermPointer none = squared_measured(1.0, {3});
+  const TermPointer none = squared_measured(1.0, {12});
   EXPECT_EQ(message_of<InvalidInput>([&] { static_cast<void>(none->value(values)); }),
-            "squared_measured: there is no row 3 of measured; it has 3");
+            "squared_measured: there is no row 12 of measured; it has 12");
   EXPECT_THROW(static_cast<void>(squared_measured(1.0, {1, 1})), InvalidInput);
-  EXPECT_THROW(static_cast<void>(work({0}, 0.0)), InvalidInput);
+  EXPECT_THROW(static_cast<void>(work({9}, 0.0)), InvalidInput);
   EXPECT_THROW(static_cast<void>(work({}, 0.1)), InvalidInput);
   EXPECT_THROW(static_cast<void>(net_work({})), InvalidInput);
   const ValuePlace place{ValueField::kQ, 3, 2};

@@ -19,7 +19,7 @@ TEST(TrajectoryPartials, StartAtZeroInTheShapeOfTheValues) {
   const TrajectoryPartials partials(values);
   EXPECT_EQ(partials.q, Eigen::MatrixXd::Zero(4, 6));
   EXPECT_EQ(partials.qdot, Eigen::MatrixXd::Zero(4, 6));
-  EXPECT_EQ(partials.v, Eigen::MatrixXd::Zero(6, 6));
+  EXPECT_EQ(partials.v(), Eigen::MatrixXd::Zero(6, 6));
   EXPECT_EQ(partials.u, Eigen::MatrixXd::Zero(2, 5));
   EXPECT_EQ(partials.p, Eigen::VectorXd::Zero(3));
 }
@@ -92,7 +92,8 @@ TEST(Objective, NamesTheTermWhosePartialsAreNotFinite) {
         "mine", [](const TrajectoryValues&) { return 1.0; },
         [part](const TrajectoryValues&, TrajectoryPartials& partials) {
           const double bad = std::numeric_limits<double>::quiet_NaN();
-          Eigen::MatrixXd* const parts[] = {&partials.q, &partials.qdot, &partials.v, &partials.u};
+          Eigen::MatrixXd* const parts[] = {&partials.q, &partials.qdot, &partials.measured,
+                                            &partials.u};
           (part < 4 ? (*parts[part])(0, 0) : partials.p[0]) = bad;
         }));
     EXPECT_EQ(message_of<NumericalFailure>([&] { static_cast<void>(objective.partials(values)); }),

@@ -18,12 +18,12 @@ TEST(SeparableTerm, TakesAnyFunctionOfOneNumber) {
   const TrajectoryValues values = testing::random_values(1);
   const TermPointer term = separable_term(
       "cosh",
-      {{.field = ValueField::kV, .rows = {4, 1}, .weight = 0.3, .times_h = true},
+      {{.field = ValueField::kMeasured, .rows = {4, 1}, .weight = 0.3, .times_h = true},
        {.field = ValueField::kU, .target = Eigen::Vector2d(0.5, -0.5), .final_only = true}},
       cosh_jet);
   double expected = 0.0;
   for (int k = 1; k <= 5; ++k) {
-    expected += 0.3 * 0.1 * (std::cosh(values.v(4, k)) + std::cosh(values.v(1, k)));
+    expected += 0.3 * 0.1 * (std::cosh(values.v()(4, k)) + std::cosh(values.v()(1, k)));
   }
   expected += std::cosh(values.u(0, 4) - 0.5) + std::cosh(values.u(1, 4) + 0.5);
   EXPECT_NEAR(term->value(values), expected, 1e-14);

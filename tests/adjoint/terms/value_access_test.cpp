@@ -27,8 +27,8 @@ TEST(ValueAccess, ListsEveryNumberOnceInTheOrderOfTheMembers) {
 
 TEST(ValueAccess, KnowsTheShapesOfTheMembers) {
   const TrajectoryValues values = testing::random_values(1);
-  EXPECT_EQ(field_rows(values, ValueField::kV), 6);
-  EXPECT_EQ(field_columns(values, ValueField::kV), 6);
+  EXPECT_EQ(field_rows(values, ValueField::kMeasured), 12);
+  EXPECT_EQ(field_columns(values, ValueField::kMeasured), 6);
   EXPECT_EQ(field_columns(values, ValueField::kU), 5);
   EXPECT_EQ(field_columns(values, ValueField::kP), 1);
 }

@@ -117,10 +117,16 @@ TEST(Horizon, NamesMeasuredRowsAndTheNearestToAWrongName) {
   SimulationOptions options = options_of("bdf1", 0.1, 5);
   options.measurements = {CentreOfMass{"centre"}, LinearMomentum{"momentum"}};
   const Horizon horizon = make_horizon(testing::double_pendulum(), options);
-  const std::vector<std::string> names = {"centre.x",   "centre.y",   "centre.z",
-                                          "momentum.x", "momentum.y", "momentum.z"};
+  const std::vector<std::string> names = {"upper.x",  "upper.y",    "upper.z",    "lower.x",
+                                          "lower.y",  "lower.z",    "centre.x",   "centre.y",
+                                          "centre.z", "momentum.x", "momentum.y", "momentum.z"};
   EXPECT_EQ(horizon.measured_names(), names);
-  EXPECT_EQ(horizon.measured_index("momentum.y"), 4);
+  EXPECT_EQ(horizon.measured_index("momentum.y"), 10);
+  EXPECT_EQ(horizon.measured_rows().variables, 6);
+  EXPECT_EQ(horizon.measured_rows().tactile, 0);
+  options.measurements = {CentreOfMass{"upper"}};
+  EXPECT_EQ(message_of<InvalidInput>([&] { static_cast<void>(horizon.with(options)); }),
+            "measurement 'upper': its row 'upper.x' has the name of another; names must differ");
   EXPECT_EQ(message_of<InvalidInput>([&] { static_cast<void>(horizon.measured_index("centre")); }),
             "there is no measured row 'centre'; did you mean 'centre.x'?");
 }

@@ -121,8 +121,8 @@ TEST(Simulator, GivesValuesInTheirShapes) {
   EXPECT_EQ(values.q.rows(), model.dof());
   EXPECT_EQ(values.q.cols(), 5);
   EXPECT_EQ(values.qdot.cols(), 5);
-  EXPECT_EQ(values.v.rows(), model.variable_count());
-  EXPECT_EQ(values.v.cols(), 5);
+  EXPECT_EQ(values.v().rows(), model.variable_count());
+  EXPECT_EQ(values.v().cols(), 5);
   EXPECT_EQ(values.u.cols(), 4);
   EXPECT_EQ(values.q.col(0), inputs.q0);
   EXPECT_EQ(values.qdot.col(0), inputs.qdot0);
@@ -200,7 +200,7 @@ TEST(Simulator, ChangesChartBeyondTheLimitAndKeepsTheMotion) {
       const double angle = 9.0 * 0.01 * k;
       const Eigen::Vector3d tip =
           Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * Eigen::Vector3d(0.4, -0.3, 0.5);
-      EXPECT_LT((values.v.col(k) - tip).norm(), 1e-11) << integrator.name << ' ' << k;
+      EXPECT_LT((values.v().col(k) - tip).norm(), 1e-11) << integrator.name << ' ' << k;
       EXPECT_LT(values.q.col(k).norm(), kChartLimit + 0.1);
     }
   }

@@ -73,7 +73,9 @@ TEST(ValueReader, ReadsMeasurementsWithTheControlOfTheStepThatEnds) {
       read_values(horizon, simulate(horizon, problem.inputs).trajectory());
   ASSERT_EQ(values.measured.rows(), horizon.measured_count());
   ASSERT_EQ(values.measured.cols(), 31);
-  EXPECT_EQ(horizon.measured_count(), 3 + 3 + 1 + 1 + 4 + 4 + 1 + 1 + 3 + 3);
+  EXPECT_EQ(values.declared_count(), 3 + 3 + 1 + 1 + 4 + 4 + 1 + 1 + 3 + 3);
+  EXPECT_EQ(values.v().rows(), horizon.model().variable_count());
+  EXPECT_EQ(values.tactile().rows(), horizon.model().tactile_count());
   // Motor 0 is a force without a range: its power is u q̇.
   const int row = horizon.measured_index("power");
   const int c = horizon.model().coordinates_of_link(horizon.model().find_link("upper")).begin;
@@ -93,7 +95,8 @@ TEST(ValueReader, FindsRowsByNameAndSuggestsTheNearest) {
                 [&] { static_cast<void>(problem.horizon.measured_index("centre.w")); }),
             "there is no measured row 'centre.w'; did you mean 'centre.x'?");
   const Problem plain = contact_problem("bdf1", 0.01, 3);
-  EXPECT_EQ(plain.horizon.measured_count(), 0);
+  const Model& model = plain.horizon.model();
+  EXPECT_EQ(plain.horizon.measured_count(), model.variable_count() + model.tactile_count());
   SimulationOptions options;
   options.measurements = {PointVelocity{"tip", 9}};
   EXPECT_EQ(testing::message_of<InvalidInput>([&] {

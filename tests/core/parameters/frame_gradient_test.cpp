@@ -64,7 +64,7 @@ class EveryModelsFrames : public ::testing::TestWithParam<unsigned> {
 
 TEST_P(EveryModelsFrames, MoveWithEachParameterByTheTwistThatDualsGive) {
   for_each_frame_parameter([&](const ParameterBlock& block, int i) {
-    const auto twists = frame_twists<double>(model, mechanism, motion, set, block, p);
+    const auto twists = frame_twists<double>(model, {mechanism, set, p}, motion, block);
     const Vector6<double> expected = twist_by_duals(block, i);
     EXPECT_LT((twists(set[i].component) - expected).norm(), 1e-13 * (1.0 + expected.norm()))
         << set[i].name;
@@ -77,7 +77,7 @@ TEST_P(EveryModelsFrames, TurnACovectorIntoItsPowerOnEachTwist) {
   for (const ParameterBlock& block : set.blocks()) {
     if (block.kind == ParameterKind::kJointTransform ||
         block.kind == ParameterKind::kBodyTransform) {
-      add_frame_gradient<double>(model, mechanism, motion, set, block, p, covector, grad);
+      add_frame_gradient<double>(model, {mechanism, set, p}, motion, block, covector, grad);
     }
   }
   for_each_frame_parameter([&](const ParameterBlock& block, int i) {

@@ -76,7 +76,7 @@ TEST_P(EveryModelsLinks, AreDifferentiatedByTheirCovectors) {
     by_p.setOnes();
     links.add_coordinates(motion, by_q);
     links.add_rates(motion, by_qdot);
-    links.add_frames(mechanism, set, p, motion, by_p);
+    links.add_frames({mechanism, set, p}, motion, by_p);
   }
   const auto one = [](const Dual& value) { return VectorX<Dual>::Constant(1, value).eval(); };
   const VectorX<Dual> q = state.q.cast<Dual>();

@@ -8,6 +8,7 @@
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/geometry/surface_points.h"
+#include "hbar/core/parameters/parameter_kinds.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random_model.h"
 
@@ -128,7 +129,8 @@ TEST(ParameterSet, IsMadeOfWholeBlocksInOrder) {
 TEST(EveryParameterKind, IsListedWithANameOfItsOwn) {
   const ParameterSet set = ParameterSet::all(testing::random_contact_model(1));
   std::set<std::string_view> names;
-  for (const ParameterKind kind : parameter_kinds()) {
+  for (const ParameterKindRow& row_of_kind : parameter_kinds()) {
+    const ParameterKind kind = row_of_kind.kind;
     names.insert(kind_name(kind));
     EXPECT_TRUE(std::any_of(set.parameters().begin(), set.parameters().end(),
                             [kind](const Parameter& p) { return p.kind == kind; }))

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "tests/core/parameters/two_limbs.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random_model.h"
 
@@ -120,26 +121,9 @@ TEST_P(EveryModelsPattern, CouplesDeclaredPairsAndNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, EveryModelsPattern, ::testing::Values(1U, 2U, 3U));
 
-/// A base with an arm and a leg of one hinge each, and a stone that is free in x, y, z.
-Model two_limbs() {
-  ModelBuilder builder("limbs");
-  const auto add = [&](int parent, const std::string& name, const JointKind& kind) {
-    Body body = solid_body(name, Cuboid{}, 1.0);
-    body.contact_points = Eigen::Matrix3Xd::Zero(3, 1);
-    return builder.add_link(parent, {.name = name, .kind = kind}, body);
-  };
-  const int base = add(-1, "base", RevoluteJoint{});
-  const int arm = add(base, "arm", RevoluteJoint{});
-  add(base, "leg", RevoluteJoint{});
-  const int stone = add(-1, "stone", TranslationalJoint{});
-  builder.add_contact({.link = arm, .other = stone});
-  builder.add_contact({.link = stone, .surface = Plane{}});
-  return builder.build();
-}
-
 TEST(ResidualPattern, IsAsWorkedOutByHand) {
   using Pattern = std::vector<std::vector<int>>;
-  const Model model = two_limbs();
+  const Model model = testing::two_limbs();
   EXPECT_EQ(tree_pattern(model.tree()),
             (Pattern{{0, 1, 2}, {0, 1}, {0, 2}, {3, 4, 5}, {3, 4, 5}, {3, 4, 5}}));
   EXPECT_EQ(residual_pattern(model), (Pattern{{0, 1, 2, 3, 4, 5},
@@ -150,32 +134,6 @@ TEST(ResidualPattern, IsAsWorkedOutByHand) {
                                               {0, 1, 3, 4, 5}}));
   EXPECT_EQ(coupled_coordinates(model, model.contact(0)), (std::vector<int>{0, 1, 3, 4, 5}));
   EXPECT_EQ(coupled_coordinates(model, model.contact(1)), (std::vector<int>{3, 4, 5}));
-}
-
-TEST(ParameterRows, AreThoseOfTheContactsThatAParameterChanges) {
-  const Model model = two_limbs();
-  const auto rows = [&](const std::string& name) {
-    const ParameterSet set = ParameterSet::named(model, {name});
-    return parameter_rows(model, set.blocks()[0]);
-  };
-  using Rows = std::vector<int>;
-  // By name: own path, and what contacts of the bodies that it moves couple.
-  const std::vector<std::pair<std::string, Rows>> expected = {
-      {"joint.leg.rotation", {0, 2}},
-      {"joint.arm.rotation", {0, 1, 3, 4, 5}},
-      {"body.leg.rotation", {0, 2}},
-      {"body.arm.rotation", {0, 1, 3, 4, 5}},
-      {"body.arm.mass", {0, 1}},
-      {"body.leg.size", {0, 2}},
-      {"body.stone.size", {0, 1, 3, 4, 5}},
-      {"body.arm.contact", {0, 1, 3, 4, 5}},
-      {"body.stone.contact", {3, 4, 5}},
-      {"body.stone.contact_scale", {3, 4, 5}},
-      {"contact.arm-stone", {0, 1, 3, 4, 5}},
-      {"contact.stone-ground", {3, 4, 5}}};
-  for (const auto& [name, of_name] : expected) {
-    EXPECT_EQ(rows(name), of_name) << name;
-  }
 }
 
 }  // namespace
