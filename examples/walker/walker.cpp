@@ -62,6 +62,10 @@ Eigen::Vector2d bend(const Leg& leg, double x, double z) {
   return {std::atan2(x, -z) + ahead, -knee};
 }
 
+std::string power_name(const Model& model, int motor) {
+  return model.control_name(model.first_control(motor)) + ".power";
+}
+
 SimulationOptions simulation_options(const Plan& plan, const Model& model) {
   SimulationOptions options;
   options.integrator = "bdf2";
@@ -69,8 +73,7 @@ SimulationOptions simulation_options(const Plan& plan, const Model& model) {
   options.steps = plan.steps;
   for (std::size_t i = 0; i < model.motors().size(); ++i) {
     const auto motor = static_cast<int>(i);
-    options.measurements.emplace_back(
-        MotorPower{model.control_name(model.first_control(motor)) + ".power", motor});
+    options.measurements.emplace_back(MotorPower{power_name(model, motor), motor});
   }
   for (const char* side : {"left", "right"}) {
     options.measurements.emplace_back(
@@ -86,8 +89,8 @@ Objective objective_of(const Plan& plan, Aim aim, const Horizon& horizon,
     return objective.add(effort(0.1)).add(control_smoothness(1e-3));
   }
   std::vector<int> powers;
-  for (std::size_t i = 0; i < horizon.model().motors().size(); ++i) {
-    powers.push_back(static_cast<int>(i));
+  for (int motor = 0; motor < static_cast<int>(horizon.model().motors().size()); ++motor) {
+    powers.push_back(horizon.measured_index(power_name(horizon.model(), motor)));
   }
   const double scale = 1.0 / (nominal_weight(horizon.model()) * plan.advance());
   const CostWeights& weights = aim == Aim::kSmoothedCost ? kWide : kNarrow;

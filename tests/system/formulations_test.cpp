@@ -68,7 +68,8 @@ TrajectoryProblem reach_problem() {
   out.constraints = {variable_at_step(model, "tip", kReachSteps, {0.45, 0.0, 0.35}),
                      rate_limits(model, 0, {kReachSteps}, 0.0, 0.0),
                      rate_limits(model, 1, {kReachSteps}, 0.0, 0.0),
-                     value_limits("shoulder power", ValueField::kMeasured, 0,
+                     value_limits("shoulder power", ValueField::kMeasured,
+                                  out.horizon.measured_index("shoulder power"),
                                   step_range(1, kReachSteps, 3), -20.0, 20.0)};
   out.initial = InitialStateBounds{Eigen::Vector2d(0.7, 0.2), Eigen::Vector2d(1.1, 0.6),
                                    Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
