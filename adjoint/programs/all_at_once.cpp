@@ -5,7 +5,9 @@
 
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/derivatives/stage_weights.h"
+#include "hbar/adjoint/programs/state_guess.h"
 #include "hbar/adjoint/programs/state_variables.h"
+#include "hbar/adjoint/programs/stopwatch.h"
 #include "hbar/adjoint/trajectory/integrator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"

@@ -6,6 +6,7 @@
 
 #include "hbar/adjoint/derivatives/linearization.h"
 #include "hbar/adjoint/programs/all_at_once_hessian.h"
+#include "hbar/adjoint/programs/formulation.h"
 #include "hbar/adjoint/programs/transcription.h"
 #include "hbar/adjoint/trajectory/trajectory_residual.h"
 #include "hbar/adjoint/trajectory/value_reader.h"

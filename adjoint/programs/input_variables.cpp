@@ -38,18 +38,6 @@ void require_map(const TrajectoryProblem& problem) {
 
 }  // namespace
 
-Eigen::VectorXd filled(const Eigen::VectorXd& vector, Eigen::Index count, double value,
-                       const char* name) {
-  if (vector.size() == 0) {
-    return Eigen::VectorXd::Constant(count, value);
-  }
-  if (vector.size() != count) {
-    throw InvalidInput(concat("TrajectoryProblem: ", name, " has ", vector.size(),
-                              " entries; it must have ", count));
-  }
-  return vector;
-}
-
 InputVariables::InputVariables(const TrajectoryProblem& problem) : problem_(problem) {
   require_map(problem);
   if (problem.controls.hold < 1) {

@@ -74,9 +74,4 @@ class InputVariables {
   solvers::NlpVariables variables_;
 };
 
-/// `vector`, or `count` times `value` if it is empty.
-/// @throws InvalidInput naming `name` if it has another size
-[[nodiscard]] Eigen::VectorXd filled(const Eigen::VectorXd& vector, Eigen::Index count,
-                                     double value, const char* name);
-
 }  // namespace hbar

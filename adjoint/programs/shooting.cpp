@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "hbar/adjoint/outputs/measured_reads.h"
+#include "hbar/adjoint/programs/state_guess.h"
 #include "hbar/adjoint/programs/state_variables.h"
+#include "hbar/adjoint/programs/stopwatch.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "hbar/adjoint/programs/formulation.h"
 #include "hbar/adjoint/programs/shooting_segment.h"
 #include "hbar/adjoint/programs/transcription.h"
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hbar/adjoint/programs/shooting.h"
+#include "hbar/adjoint/programs/stopwatch.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {

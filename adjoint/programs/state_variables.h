@@ -3,26 +3,19 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/programs/input_variables.h"
+#include "hbar/adjoint/programs/trajectory_problem.h"
 
 namespace hbar {
-
-/// A first guess of the motion at the steps' ends, q above q̇: from `q_guess` with difference
-/// quotients for the rates, or, if that is empty, what the start of `head` simulates; from where
-/// that fails on, rest.
-///
-/// @param q_guess  empty, or                                                  [dof x N+1]
-/// @returns                                                                   [2 dof x N+1]
-/// @throws InvalidInput if q_guess has another shape or is not finite, or exponential coordinates
-///         change chart in what is simulated
-[[nodiscard]] Eigen::MatrixXd guess_states(const TrajectoryProblem& problem,
-                                           const InputVariables& head,
-                                           const Eigen::MatrixXd& q_guess);
 
 /// "elbow", …, "elbow rate", …                                                [2 dof]
 [[nodiscard]] std::vector<std::string> state_names(const Model& model);
 
 /// Typical sizes of changes of q and q̇.                                      [2 dof]
 [[nodiscard]] Eigen::VectorXd state_scale(const TrajectoryProblem& problem);
+
+/// `vector`, or `count` times `value` if it is empty.
+/// @throws InvalidInput naming `name` if it has another size
+[[nodiscard]] Eigen::VectorXd filled(const Eigen::VectorXd& vector, Eigen::Index count,
+                                     double value, const char* name);
 
 }  // namespace hbar

@@ -1,44 +1,9 @@
 #include "hbar/adjoint/programs/transcription.h"
 
-#include <array>
-#include <utility>
-
-#include "hbar/adjoint/programs/all_at_once.h"
-#include "hbar/adjoint/programs/shooting.h"
 #include "hbar/adjoint/terms/value_access.h"
 #include "hbar/core/base/error.h"
-#include "hbar/core/base/nearest_name.h"
 
 namespace hbar {
-namespace {
-
-constexpr std::array<std::pair<Formulation, std::string_view>, 3> kFormulations = {
-    {{Formulation::kShooting, "shooting"},
-     {Formulation::kMultipleShooting, "multiple-shooting"},
-     {Formulation::kAllAtOnce, "all-at-once"}}};
-
-}  // namespace
-
-std::string_view name_of(Formulation formulation) {
-  return kFormulations[static_cast<std::size_t>(formulation)].second;
-}
-
-Formulation find_formulation(std::string_view name) {
-  std::vector<std::string> known;
-  for (const auto& [formulation, its_name] : kFormulations) {
-    if (name == its_name) {
-      return formulation;
-    }
-    known.emplace_back(its_name);
-  }
-  throw InvalidInput(concat("there is no formulation '", name, "'; ",
-                            unknown_name_hint(std::string(name), known)));
-}
-
-Stopwatch::~Stopwatch() {
-  sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-}
-
 Transcription::Transcription(const TrajectoryProblem& problem)
     : problem_(problem), head_(problem_), variables_(head_.variables()) {
   std::vector<double> lower;
@@ -137,26 +102,6 @@ void Transcription::put_own_rows(const TrajectoryValues& values, EntryPlan& entr
       }
     }
   }
-}
-
-std::unique_ptr<Transcription> transcribe(const TrajectoryProblem& problem,
-                                          const TranscriptionOptions& options) {
-  if (options.formulation == Formulation::kAllAtOnce) {
-    return std::make_unique<AllAtOnce>(problem, options);
-  }
-  return std::make_unique<Shooting>(problem, options);
-}
-
-std::vector<int> segment_starts(int steps, int segments) {
-  if (segments < 1 || segments > steps) {
-    throw InvalidInput(concat("multiple shooting: ", segments, " segments of ", steps,
-                              " steps; there must be at least one, and no more than steps"));
-  }
-  std::vector<int> out;
-  for (int i = 1; i < segments; ++i) {
-    out.push_back(static_cast<int>(static_cast<long long>(steps) * i / segments));
-  }
-  return out;
 }
 
 }  // namespace hbar

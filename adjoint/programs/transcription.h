@@ -1,38 +1,12 @@
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <optional>
-#include <string_view>
 
 #include "hbar/adjoint/programs/entry_plan.h"
 #include "hbar/adjoint/programs/input_variables.h"
 
 namespace hbar {
-
-/// The three ways to make a nonlinear program of a TrajectoryProblem. They have the same optima.
-enum class Formulation {
-  kShooting,  ///< inputs alone are variables; the trajectory is what simulation makes of them
-  kMultipleShooting,  ///< the horizon in segments, each from a state that is a variable
-  kAllAtOnce          ///< every coordinate of every stage is a variable, ḡ = 0 are constraints
-};
-
-/// "shooting", "multiple-shooting", "all-at-once".
-[[nodiscard]] std::string_view name_of(Formulation formulation);
-/// @throws InvalidInput naming the formulations there are
-[[nodiscard]] Formulation find_formulation(std::string_view name);
-
-/// How to transcribe.
-struct TranscriptionOptions {
-  Formulation formulation = Formulation::kShooting;
-  /// Of kMultipleShooting, as equal as steps allow. BDF2 starts anew in each: give the others
-  /// SimulationOptions::restarts = segment_starts(steps, segments) to have the same trajectory.
-  int segments = 8;
-  int threads = 0;  ///< that evaluate segments; 0: one per core
-  /// A first guess of the motion where that is a variable; empty: what the start simulates, and
-  /// where that fails, rest.                                                    [dof x N+1]
-  Eigen::MatrixXd q_guess = {};
-};
 
 /// Where a transcription spent its time.
 struct TranscriptionTimes {
@@ -141,29 +115,6 @@ class Transcription : public solvers::Nlp {
   Eigen::Index own_rows_ = 0;
   std::optional<HessianPlan> exact_;
   std::optional<HessianPlan> gauss_newton_;
-};
-
-/// Makes a nonlinear program of a problem, of which it keeps a copy of its own.
-///
-/// @throws InvalidInput if the problem's parts or the options do not fit together: sizes, places
-///         beyond the trajectory, more segments than steps
-[[nodiscard]] std::unique_ptr<Transcription> transcribe(const TrajectoryProblem& problem,
-                                                        const TranscriptionOptions& options = {});
-
-/// The steps at which the segments of kMultipleShooting begin, without the first.
-[[nodiscard]] std::vector<int> segment_starts(int steps, int segments);
-
-/// Adds the time until its end to a sum.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& sum) : sum_(sum) {}
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-  ~Stopwatch();
-
- private:
-  double& sum_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace hbar

@@ -1,7 +1,13 @@
 #pragma once
 
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
 #include "hbar/adjoint/study/csv.h"
-#include "hbar/adjoint/study/many_starts.h"
+#include "hbar/adjoint/study/job.h"
 
 namespace hbar::study {
 

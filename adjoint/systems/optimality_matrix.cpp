@@ -171,7 +171,7 @@ std::function<std::string(int)> kkt_names(const Horizon& horizon, const Places& 
 
 void fill_gauss_newton(const Horizon& horizon, const Trajectory& trajectory,
                        const Linearization& linearization, const SystemOptions& weights,
-                       TrajectorySystem& out) {
+                       AssembledSystem& out) {
   const SparseMatrix& H = linearization.H.matrix();
   const SparseMatrix scaled = row_scales(H).asDiagonal() * H;
   const SparseMatrix E = followed_by_q(horizon, trajectory);
@@ -186,7 +186,7 @@ void fill_gauss_newton(const Horizon& horizon, const Trajectory& trajectory,
 
 void fill_kkt(const Horizon& horizon, const Trajectory& trajectory,
               const Linearization& linearization, const SystemOptions& weights,
-              TrajectorySystem& out) {
+              AssembledSystem& out) {
   const SparseMatrix& H = linearization.H.matrix();
   const Places places(horizon, trajectory.timeline, weights.parameters);
   const Eigen::VectorXd scales = row_scales(H);

@@ -1,11 +1,8 @@
 #pragma once
 
-#include <functional>
-#include <string>
 #include <string_view>
 
-#include "hbar/adjoint/derivatives/linearization.h"
-#include "hbar/solvers/linear/solver_options.h"
+#include "hbar/adjoint/systems/optimality_matrix.h"
 
 namespace hbar {
 
@@ -28,23 +25,9 @@ enum class SystemKind {
 /// @throws InvalidInput naming the systems there are
 [[nodiscard]] SystemKind find_system_kind(std::string_view name);
 
-/// Weights of the two optimisation systems. Rows of ḡ are scaled to a largest entry of 1 (D).
-struct SystemOptions {
-  double tracking = 1.0;    ///< w, on what is followed: the variables v, or q where there are none
-  double forces = 1.0;      ///< ρ, kGaussNewton: on the forces that act besides the motors
-  double effort = 1e-2;     ///< kKkt: on controls
-  double damping = 1e-6;    ///< λ > 0, on every unknown of the optimisation
-  double slack = 1e-8;      ///< kKkt: −slack·I is the multipliers' diagonal block, > 0
-  bool parameters = false;  ///< kKkt: design parameters are unknowns, too (last: a border)
-};
-
-/// A linear system with what a solver and a reader of its messages need to know of it.
-struct TrajectorySystem {
+/// A linear system of a trajectory.
+struct TrajectorySystem : AssembledSystem {
   SystemKind kind = SystemKind::kAdjoint;
-  solvers::SparseMatrix A;         ///<                                            [m x m]
-  Eigen::VectorXd b;               ///< a right-hand side, see assemble_system      [m]
-  solvers::SolverOptions options;  ///< structure and blocks, in time order
-  std::function<std::string(int)> name_of_unknown;  ///< "stage 3 (t = 0.04), coordinate elbow"
 };
 
 /// Assembles a system along a trajectory.

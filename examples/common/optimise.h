@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "examples/common/process.h"
-#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/solvers/nlp/ipopt.h"
 
 namespace CLI {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "finger.h"
-#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/solvers/nlp/ipopt.h"
 
 namespace hbar::finger_reach {

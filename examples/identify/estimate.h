@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/adjoint/study/information.h"
 #include "hbar/adjoint/study/many_starts.h"
 #include "hbar/solvers/nlp/ipopt.h"

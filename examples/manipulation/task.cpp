@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/adjoint/terms/generic_terms.h"
 #include "hbar/adjoint/terms/objective_terms.h"
 #include "hbar/core/base/error.h"

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/solvers/nlp/ipopt.h"
 
 namespace hbar::swing_up {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/adjoint/terms/constraint_terms.h"
 #include "hbar/adjoint/terms/objective_terms.h"
 #include "hbar/core/model/model_builder.h"

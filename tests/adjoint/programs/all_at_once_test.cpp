@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "hbar/adjoint/programs/shooting.h"
+#include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/adjoint/trajectory/integrator.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 
 #include "hbar/adjoint/programs/shooting.h"
+#include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "tests/adjoint/programs/transcription_problems.h"
 #include "tests/support/dense_nlp.h"

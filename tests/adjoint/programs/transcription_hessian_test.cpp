@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hbar/adjoint/programs/transcription.h"
+#include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/core/base/error.h"
 #include "tests/adjoint/programs/transcription_problems.h"
 #include "tests/support/dense_nlp.h"

@@ -68,7 +68,7 @@ constexpr SystemOptions kWeights = {
 
 TEST(OptimalityMatrix, GaussNewtonIsSTransposedSPlusLambda) {
   Assembled a(driven_pendulum("bdf2", 6));
-  TrajectorySystem out;
+  AssembledSystem out;
   fill_gauss_newton(a.problem.horizon, a.trajectory, a.system, kWeights, out);
   const Eigen::MatrixXd H(a.system.H.matrix());
   const Eigen::MatrixXd E = variables_by_q(a.problem.horizon, a.trajectory);
@@ -108,7 +108,7 @@ TEST(OptimalityMatrix, KktIsThatOfTheGroupsInTimeOrder) {
     Assembled a(driven_pendulum(integrator, 5));
     SystemOptions weights = kWeights;
     weights.parameters = true;
-    TrajectorySystem out;
+    AssembledSystem out;
     fill_kkt(a.problem.horizon, a.trajectory, a.system, weights, out);
     const Eigen::MatrixXd groups = kkt_in_groups(a);
     // The order of unknowns, from their names.
@@ -139,7 +139,7 @@ TEST(OptimalityMatrix, KktIsThatOfTheGroupsInTimeOrder) {
 
 TEST(OptimalityMatrix, KktHasAsManyNegativeEigenvaluesAsMultipliers) {
   Assembled a(make_problem(testing::contact_model(), "bdf1", 0.01, 4));
-  TrajectorySystem out;
+  AssembledSystem out;
   fill_kkt(a.problem.horizon, a.trajectory, a.system, {}, out);
   const Eigen::VectorXd eigenvalues =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(out.A), Eigen::EigenvaluesOnly)
@@ -149,7 +149,7 @@ TEST(OptimalityMatrix, KktHasAsManyNegativeEigenvaluesAsMultipliers) {
 
 TEST(OptimalityMatrix, KktNamesItsUnknowns) {
   Assembled a(driven_pendulum("bdf1", 5));
-  TrajectorySystem out;
+  AssembledSystem out;
   SystemOptions weights;
   weights.parameters = true;
   fill_kkt(a.problem.horizon, a.trajectory, a.system, weights, out);

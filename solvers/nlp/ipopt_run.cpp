@@ -1,4 +1,4 @@
-#include "hbar/solvers/nlp/ipopt.h"
+#include "hbar/solvers/nlp/ipopt_run.h"
 
 #include <IpIpoptApplication.hpp>
 #include <IpJournalist.hpp>
@@ -11,7 +11,6 @@
 #include <optional>
 #include <utility>
 
-#include "hbar/solvers/nlp/ipopt_run.h"
 #include "hbar/solvers/nlp/scaled_nlp.h"
 
 namespace hbar::solvers {

@@ -1,4 +1,4 @@
-#include "hbar/solvers/nlp/ipopt.h"
+#include "hbar/solvers/nlp/ipopt_run.h"
 
 #include <gtest/gtest.h>
 
