@@ -42,7 +42,7 @@ class AllAtOnceHessian {
   void add_stage(int stage, EntryPlan& entries) const;
   void put_stage(int stage, const StageCurvature& h, EntryPlan& entries) const;
 
-  std::shared_ptr<const DesignMap> map_;
+  DesignMapPointer map_;
   const InputVariables& head_;
   const StageLayout& layout_;
   StageHessian stage_;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "hbar/adjoint/programs/design_map.h"
+#include "hbar/adjoint/design/design_map.h"
 #include "hbar/adjoint/terms/constraint.h"
 #include "hbar/adjoint/terms/objective.h"
 #include "hbar/adjoint/trajectory/horizon.h"
@@ -35,7 +35,7 @@ struct InitialStateBounds {
 /// Transcription turns it into a nonlinear program in one of three ways.
 struct TrajectoryProblem {
   Horizon horizon;                             ///< scene, horizon, integrator, measurements
-  std::shared_ptr<const DesignMap> map;        ///< onto the horizon's parameters
+  DesignMapPointer map;                        ///< onto the horizon's parameters
   Objective objective;                         ///< of trajectory, controls and parameters
   std::vector<ConstraintPointer> constraints;  ///< their rows follow each other in this order
   HeldControls controls;

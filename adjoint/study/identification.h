@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hbar/adjoint/programs/design_map.h"
+#include "hbar/adjoint/design/design_map.h"
 #include "hbar/adjoint/study/information.h"
 #include "hbar/adjoint/study/trajectory_csv.h"
 #include "hbar/adjoint/terms/objective.h"

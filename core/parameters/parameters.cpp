@@ -40,7 +40,7 @@ void require_physical(const Model& model, const Eigen::VectorXd& mass,
     if (!(I.minCoeff() > 0.0) || 2.0 * I.maxCoeff() > I.sum() * (1.0 + 1e-9)) {
       throw InvalidInput(concat("body.", body, ".inertia is (", I.transpose(),
                                 "); moments must be positive and none may exceed the sum of the "
-                                "other two (see InertiaChart for a chart that keeps to that)"));
+                                "other two (see inertia_chart for a chart that keeps to that)"));
     }
   }
 }

@@ -103,7 +103,7 @@ Reach make_reach(const std::filesystem::path& scene_file, const ReachOptions& op
   controls.start = holding_controls(model, kStart);
   controls.lower = Eigen::VectorXd::Constant(4, -1.0);
   controls.upper = Eigen::VectorXd::Constant(4, 1.0);
-  auto map = std::make_shared<FingerMap>(out.phalanges, set, options.payload.value_or(0.0));
+  const DesignMapPointer map = finger_map(out.phalanges, set, options.payload);
   SimulationOptions simulation;
   simulation.integrator = "bdf2";
   simulation.h = kDuration / steps;
@@ -114,7 +114,7 @@ Reach make_reach(const std::filesystem::path& scene_file, const ReachOptions& op
     objective.add(mass_term(set, out.phalanges, 10.0 * options.mass_weight));
   }
   out.problem = transcribe(TrajectoryProblem{.horizon = Horizon(model, std::move(set), simulation),
-                                             .map = std::move(map),
+                                             .map = map,
                                              .objective = std::move(objective),
                                              .constraints = std::move(constraints),
                                              .controls = std::move(controls),

@@ -52,10 +52,9 @@ ExitCode repeat(const Rig& rig, const Arguments& arguments) {
   if (example::stop_flag()) {
     return ExitCode::kInterrupted;
   }
-  print(
-      fmt::format("\n{}written: {}/repeat.csv\n",
-                  coverage_table(coverage(report, rig.map->nominal()), rig.map->variables().names),
-                  arguments.optimise.out.string()));
+  print(fmt::format("\n{}written: {}/repeat.csv\n",
+                    coverage_table(coverage(report, rig.nominal), rig.map->variables().names),
+                    arguments.optimise.out.string()));
   return ExitCode::kOk;
 }
 
@@ -82,8 +81,8 @@ ExitCode run(Arguments arguments) {
   const example::Optimised found =
       example::optimise(*program, arguments.optimise, fit_options(recording));
   const study::Information known = information_at(*program, recording, found.result.x);
-  print('\n' + estimate_table(known, rig.map->variables(),
-                              simulated ? rig.map->nominal() : Eigen::VectorXd()));
+  print('\n' +
+        estimate_table(known, rig.map->variables(), simulated ? rig.nominal : Eigen::VectorXd()));
   if (arguments.compare && known.complete()) {
     print('\n' + ways_table(every_way(rig, recording), known.standard_deviations));
   }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "hbar/adjoint/design/formula_map.h"
 #include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
@@ -87,8 +88,7 @@ Eigen::MatrixXd controls_of(const study::TrajectoryData& data, const Rig& rig,
 
 }  // namespace
 
-ParameterSet UnknownsMap::parameters_of(const Model& model,
-                                        const std::vector<std::string>& unknowns) {
+ParameterSet unknown_parameters(const Model& model, const std::vector<std::string>& unknowns) {
   std::vector<std::string> names;
   for (const std::string& unknown : unknowns) {
     names.push_back(unknown);
@@ -99,33 +99,30 @@ ParameterSet UnknownsMap::parameters_of(const Model& model,
   return ParameterSet::named(model, names);
 }
 
-UnknownsMap::UnknownsMap(const ParameterSet& set, const std::vector<std::string>& unknowns,
-                         const Eigen::VectorXd& start) {
-  const auto count = static_cast<Eigen::Index>(unknowns.size());
-  P_ = Eigen::MatrixXd::Zero(set.size(), count);
-  nominal_.resize(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const std::string& name = unknowns[static_cast<std::size_t>(i)];
+DesignMapPointer unknowns_map(const ParameterSet& set, const std::vector<std::string>& unknowns,
+                              const Eigen::VectorXd& start) {
+  std::vector<DesignVariable> variables;
+  for (const std::string& name : unknowns) {
     const Parameter& parameter = set[set.find(name)];
-    if (!(parameter.nominal > 0.0)) {
-      throw InvalidInput(concat("identify: '", name, "' is ", parameter.nominal,
+    const double x = parameter.nominal;
+    if (!(x > 0.0)) {
+      throw InvalidInput(concat("identify: '", name, "' is ", x,
                                 " in the scene; what is unknown must be positive there"));
     }
-    nominal_[i] = parameter.nominal;
-    P_(set.find(name), i) = 1.0;
-    if (is_mass(name)) {
-      for (const char* axis : {".x", ".y", ".z"}) {
-        const int moment = set.find(inertia_of(name) + axis);
-        P_(moment, i) = set[moment].nominal / parameter.nominal;
+    const double first = x * start[static_cast<Eigen::Index>(variables.size())];
+    variables.push_back({name, parameter.unit, first, 1e-3 * x, 1e3 * x, x});
+  }
+  return formula_map(set, design_variables(variables), [=](auto d, auto& p) {
+    for (std::size_t i = 0; i < unknowns.size(); ++i) {
+      const auto growth = d[i] / p[unknowns[i]].value;
+      p[unknowns[i]] = d[i];
+      if (is_mass(unknowns[i])) {
+        for (const char* axis : {".x", ".y", ".z"}) {
+          p[inertia_of(unknowns[i]) + axis] *= growth;
+        }
       }
     }
-    variables_.units.push_back(parameter.unit);
-  }
-  variables_.names = unknowns;
-  variables_.start = nominal_.cwiseProduct(start);
-  variables_.lower = 1e-3 * nominal_;
-  variables_.upper = 1e3 * nominal_;
-  variables_.scale = nominal_;
+  });
 }
 
 Sigmas default_sigmas() { return {{"rail", 1e-3}, {"hinge", 5e-3}}; }
@@ -143,10 +140,14 @@ Rig make_rig(const RigOptions& options) {
                " motors; it must have rail, guide and hinge, and a motor on rail and "
                "guide"));
   }
-  const ParameterSet set = UnknownsMap::parameters_of(model, options.unknowns);
+  const ParameterSet set = unknown_parameters(model, options.unknowns);
   Eigen::VectorXd start = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(options.unknowns.size()));
   for (Eigen::Index i = 0; options.wrong_start && i < start.size(); ++i) {
     start[i] = kWrong[static_cast<std::size_t>(i) % kWrong.size()];
+  }
+  Eigen::VectorXd nominal = start;
+  for (Eigen::Index i = 0; i < nominal.size(); ++i) {
+    nominal[i] = set[set.find(options.unknowns[static_cast<std::size_t>(i)])].nominal;
   }
   SimulationOptions simulation;
   simulation.integrator = "bdf2";
@@ -154,7 +155,8 @@ Rig make_rig(const RigOptions& options) {
   simulation.steps = options.steps;
   simulation.restarts = segment_starts(options.steps, options.segments);
   return {.horizon = Horizon(model, set, simulation),
-          .map = std::make_shared<UnknownsMap>(set, options.unknowns, start),
+          .map = unknowns_map(set, options.unknowns, start),
+          .nominal = nominal,
           .u = excitation(options.steps, options.sliding),
           .q0 = Eigen::Vector3d(0.0, 0.0, kFirstAngle)};
 }
@@ -164,7 +166,7 @@ std::string recorded_csv(const Rig& rig, const Sigmas& sigmas, std::mt19937_64& 
   const study::TrajectoryNames names = recorded_names(rig, sigmas, coordinates);
   Horizon horizon = rig.horizon;
   Inputs inputs = horizon.nominal_inputs();
-  inputs.p = rig.map->parameters(rig.map->nominal());
+  inputs.p = rig.map->parameters(rig.nominal);
   inputs.u = rig.u;
   inputs.q0 = rig.q0;
   const TrajectoryValues truth = read_values(horizon, simulate(horizon, inputs).trajectory());

@@ -7,47 +7,25 @@
 #include <string>
 #include <vector>
 
-#include "hbar/adjoint/programs/design_map.h"
+#include "hbar/adjoint/design/design_map.h"
 #include "hbar/adjoint/programs/trajectory_problem.h"
 #include "hbar/adjoint/study/trajectory_csv.h"
 
 namespace hbar::identify {
 
-/// What is unknown of a model, as parameters by their names. A body's moments of inertia grow with
-/// its mass, so that "body.rod.mass" stands for a density. Linear: d ↦ p = P d.
-class UnknownsMap final : public DesignMap {
- public:
-  /// The parameters that move with the unknowns.
-  /// @throws InvalidInput if a name is no parameter's, with the nearest that is
-  [[nodiscard]] static ParameterSet parameters_of(const Model& model,
-                                                  const std::vector<std::string>& unknowns);
+/// The parameters that move with unknowns, which are parameters by their names. A body's moments of
+/// inertia grow with its mass, so that "body.rod.mass" stands for a density.
+/// @throws InvalidInput if a name is no parameter's, with the nearest that is
+[[nodiscard]] ParameterSet unknown_parameters(const Model& model,
+                                              const std::vector<std::string>& unknowns);
 
-  /// @param set    parameters_of(model, unknowns)
-  /// @param start  factor > 0 of each unknown's value in the model, where a fit begins    [d]
-  UnknownsMap(const ParameterSet& set, const std::vector<std::string>& unknowns,
-              const Eigen::VectorXd& start);
-
-  [[nodiscard]] const DesignVariables& variables() const override { return variables_; }
-  [[nodiscard]] Eigen::Index parameter_count() const override { return P_.rows(); }
-  [[nodiscard]] bool depends(Eigen::Index parameter, Eigen::Index variable) const override {
-    return P_(parameter, variable) != 0.0;
-  }
-  [[nodiscard]] Eigen::VectorXd parameters(const Eigen::VectorXd& d) const override {
-    return P_ * d;
-  }
-  [[nodiscard]] Eigen::MatrixXd jacobian(const Eigen::VectorXd&) const override { return P_; }
-  [[nodiscard]] Eigen::MatrixXd hessian(const Eigen::VectorXd& d,
-                                        const Eigen::VectorXd&) const override {
-    return Eigen::MatrixXd::Zero(d.size(), d.size());
-  }
-  /// The model's own values of the unknowns.                                              [d]
-  [[nodiscard]] const Eigen::VectorXd& nominal() const { return nominal_; }
-
- private:
-  Eigen::MatrixXd P_;
-  Eigen::VectorXd nominal_;
-  DesignVariables variables_;
-};
+/// Unknowns onto unknown_parameters. Linear.
+///
+/// @param start  factor > 0 of each unknown's value in the model, where a fit begins    [d]
+/// @throws InvalidInput if an unknown is not positive in the model
+[[nodiscard]] DesignMapPointer unknowns_map(const ParameterSet& set,
+                                            const std::vector<std::string>& unknowns,
+                                            const Eigen::VectorXd& start);
 
 /// Standard deviations of what is measured, by the name of its column.
 using Sigmas = std::map<std::string, double>;
@@ -70,9 +48,10 @@ struct RigOptions {
 /// A carriage whose motors push and press in a known way, with a rod that starts turned by 0.8 rad.
 struct Rig {
   Horizon horizon;
-  std::shared_ptr<const UnknownsMap> map;
-  Eigen::MatrixXd u;   ///< known controls                                       [controls x N]
-  Eigen::VectorXd q0;  ///< known, at rest                                              [dof]
+  DesignMapPointer map;
+  Eigen::VectorXd nominal;  ///< the scene's own values of the unknowns                  [d]
+  Eigen::MatrixXd u;        ///< known controls                                       [controls x N]
+  Eigen::VectorXd q0;       ///< known, at rest                                              [dof]
 };
 
 /// @throws IoError, InvalidInput  as read_scene, or if the scene is no such rig

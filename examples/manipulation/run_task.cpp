@@ -47,8 +47,8 @@ std::string summary(const Task& task, const TaskResult& result) {
                         result.errors[k], result.start_errors[k]);
   }
   const Eigen::VectorXd lengths = result.problem->design(result.last.x);
-  for (std::size_t i = 0; i < task.phalanges.size(); ++i) {
-    text += fmt::format("length:      {:<16} {:.2f} mm\n", task.phalanges[i].body,
+  for (std::size_t i = 0; i < task.lengths.size(); ++i) {
+    text += fmt::format("length:      {:<16} {:.2f} mm\n", task.lengths[i].segments.front().body,
                         1e3 * lengths[static_cast<Eigen::Index>(i)]);
   }
   const TranscriptionTimes& times = result.problem->times();

@@ -1,6 +1,7 @@
 #include "task.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "hbar/adjoint/programs/transcribe.h"
@@ -83,13 +84,7 @@ TermPointer goal_paths(const Task& task, const Model& model, const Eigen::Vector
   });
 }
 
-std::vector<FixedParameter> fixed_parameters(const Task& task, double contact_scale) {
-  std::vector<FixedParameter> fixed;
-  for (const std::string& body : task.scaled_bodies) {
-    fixed.push_back({"body." + body + ".contact_scale", contact_scale});
-  }
-  return fixed;
-}
+std::string contact_scale_of(const std::string& body) { return "body." + body + ".contact_scale"; }
 
 }  // namespace
 
@@ -97,20 +92,25 @@ std::unique_ptr<Transcription> make_problem(const Task& task, double contact_sca
                                             const Eigen::VectorXd& start) {
   const scene::Scene scene = scene::read_scene(task.scene);
   const Model model = scene::build_model(scene);
-  const std::vector<FixedParameter> fixed = fixed_parameters(task, contact_scale);
-  const ParameterSet set = length_parameters(model, task.phalanges, fixed);
+  std::vector<std::string> names = example::stretched_parameters(model, task.lengths);
+  std::transform(task.scaled_bodies.begin(), task.scaled_bodies.end(), std::back_inserter(names),
+                 contact_scale_of);
+  const ParameterSet set = ParameterSet::named(model, names);
+  Eigen::VectorXd base = set.nominal();
+  for (const std::string& body : task.scaled_bodies) {
+    base[set.find(contact_scale_of(body))] = contact_scale;
+  }
   HeldControls controls;
   controls.hold = task.hold;
   controls.start = guessed_controls(task, model.control_count());
   controls.lower = -task.control_bound;
   controls.upper = task.control_bound;
   controls.scale = task.control_scale;
-  auto map = std::make_shared<LengthMap>(model, task.phalanges, fixed, set, task.length_share);
+  Eigen::VectorXd lengths;
   if (start.size() > 0) {
-    const Eigen::Index lengths = map->variables().size();
-    controls.start =
-        start.tail(start.size() - lengths).reshaped(controls.start.rows(), controls.start.cols());
-    map->begin_at(start.head(lengths));
+    lengths = start.head(static_cast<Eigen::Index>(task.lengths.size()));
+    controls.start = start.tail(start.size() - lengths.size())
+                         .reshaped(controls.start.rows(), controls.start.cols());
   }
   SimulationOptions simulation;
   simulation.integrator = "bdf1";
@@ -125,14 +125,15 @@ std::unique_ptr<Transcription> make_problem(const Task& task, double contact_sca
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.dof());
   objective.add(squared_velocity(task.velocity_weight))
       .add(terminal_state(rest, rest, 0.0, task.rest_weight));
-  return transcribe(TrajectoryProblem{.horizon = Horizon(model, set, simulation),
-                                      .map = std::move(map),
-                                      .objective = std::move(objective),
-                                      .constraints = {},
-                                      .controls = std::move(controls),
-                                      .q0 = q0,
-                                      .qdot0 = {},
-                                      .design_weight = 1e-2});
+  return transcribe(TrajectoryProblem{
+      .horizon = Horizon(model, set, simulation),
+      .map = example::stretch_map(model, set, base, task.lengths, task.length_share, lengths),
+      .objective = std::move(objective),
+      .constraints = {},
+      .controls = std::move(controls),
+      .q0 = q0,
+      .qdot0 = {},
+      .design_weight = 1e-2});
 }
 
 Eigen::VectorXd goal_errors(const Task& task, const Model& model, const TrajectoryValues& values) {

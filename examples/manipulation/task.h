@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "examples/common/stretch.h"
 #include "hbar/adjoint/programs/transcription.h"
-#include "length_map.h"
 
 namespace hbar::manipulation {
 
@@ -36,14 +36,14 @@ struct Task {
   std::vector<std::pair<std::string, double>> start;  ///< coordinates that do not start at 0
   std::vector<WayPoint> guess;
   std::vector<Goal> goals;
-  double path_begin = 0.1;         ///< share of the horizon at which goal coordinates set out
-  double path_end = 0.8;           ///< share of the horizon at which they shall have arrived
-  std::vector<Phalanx> phalanges;  ///< whose lengths are free
-  double length_share = 0.3;       ///< see LengthMap
-  double velocity_weight = 0.0;    ///< of ½ ∫ ‖q̇‖² dt: slow motions meet fewer surprises
-  double rest_weight = 0.0;        ///< of ½ ‖q̇‖² at the end
-  Eigen::VectorXd control_scale;   ///< typical size of a change                      [controls]
-  Eigen::VectorXd control_bound;   ///< |control| ≤                                   [controls]
+  double path_begin = 0.1;  ///< share of the horizon at which goal coordinates set out
+  double path_end = 0.8;    ///< share of the horizon at which they shall have arrived
+  std::vector<example::FreeLength> lengths;  ///< of phalanges
+  double length_share = 0.3;                 ///< how much shorter or longer they may get, < 1
+  double velocity_weight = 0.0;   ///< of ½ ∫ ‖q̇‖² dt: slow motions meet fewer surprises
+  double rest_weight = 0.0;       ///< of ½ ‖q̇‖² at the end
+  Eigen::VectorXd control_scale;  ///< typical size of a change                      [controls]
+  Eigen::VectorXd control_bound;  ///< |control| ≤                                   [controls]
   /// Relative change of the objective at which five iterations in a row end the last stage.
   double enough = 1e-3;
   std::vector<double> contact_scales = {1.0};  ///< continuation: s of (13), (14), last is 1

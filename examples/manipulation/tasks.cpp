@@ -1,6 +1,7 @@
 #include "tasks.h"
 
 #include <numbers>
+#include <utility>
 
 namespace hbar::manipulation {
 namespace {
@@ -12,20 +13,15 @@ Eigen::VectorXd vector(std::initializer_list<double> numbers) {
                                            static_cast<Eigen::Index>(numbers.size()));
 }
 
-std::vector<Phalanx> finger(const std::string& prefix) {
-  return {{prefix + "proximal", prefix + "middle_hinge"},
-          {prefix + "middle", prefix + "distal_hinge"},
-          {prefix + "distal", prefix + "tip"}};
-}
-
 /// What the tasks have in common: fingers by the prefixes of their names.
 Task with_fingers(const char* name, const std::vector<std::string>& prefixes) {
   Task task;
   task.name = name;
   task.scene = std::string(HBAR_SOURCE_DIR "/examples/scenes/") + name + ".xml";
   for (const std::string& prefix : prefixes) {
-    for (const Phalanx& phalanx : finger(prefix)) {
-      task.phalanges.push_back(phalanx);
+    for (const auto& [body, next] :
+         {std::pair{"proximal", "middle_hinge"}, {"middle", "distal_hinge"}, {"distal", "tip"}}) {
+      task.lengths.push_back({"length of " + prefix + body, {{prefix + body, prefix + next}}});
     }
   }
   task.velocity_weight = 1.0;

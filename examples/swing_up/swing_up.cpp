@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "hbar/adjoint/design/affine_map.h"
 #include "hbar/adjoint/terms/constraint_terms.h"
 #include "hbar/adjoint/terms/objective_terms.h"
 #include "hbar/core/base/error.h"
@@ -50,7 +51,7 @@ SwingUp make_swing_up(const std::filesystem::path& scene, int steps) {
   simulation.h = kDuration / steps;
   simulation.steps = steps;
   ParameterSet set;  // nothing of the cart is looked for
-  auto map = std::make_shared<IdentityDesignMap>(set);
+  auto map = parameter_map(set);
   Objective objective(effort());
   objective.add(control_smoothness(kSmoothness));
   HeldControls controls;

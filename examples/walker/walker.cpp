@@ -9,7 +9,6 @@
 #include "hbar/core/base/error.h"
 #include "hbar/core/scene/build_model.h"
 #include "hbar/core/scene/read_xml.h"
-#include "leg_map.h"
 
 namespace hbar::walker {
 namespace {
@@ -140,6 +139,11 @@ double nominal_weight(const Model& model) {
   return mass * model.gravity().norm();
 }
 
+std::vector<example::FreeLength> leg_lengths() {
+  return {{"length of thigh", {{"left_thigh", "left_knee"}, {"right_thigh", "right_knee"}}, 0.04},
+          {"length of shank", {{"left_shank", "left_foot"}, {"right_shank", "right_foot"}}, 0.04}};
+}
+
 std::vector<int> mirror(const Model& model) {
   std::vector<int> out;
   for (int i = 0; i < model.dof(); ++i) {
@@ -219,11 +223,10 @@ TrajectoryProblem walker_problem(const Plan& plan, Aim aim) {
         "hip and knee, then the right ones, and motors at these four");
   }
   const Eigen::MatrixXd guess = first_guess(plan, model);
-  const ParameterSet set = leg_parameters(model);
-  auto map = std::make_shared<LegMap>(model, set, plan.length_share);
-  if (!plan.begin.empty()) {
-    map->begin_at({plan.begin.at(0), plan.begin.at(1)});
-  }
+  const ParameterSet set =
+      ParameterSet::named(model, example::stretched_parameters(model, leg_lengths()));
+  const Eigen::VectorXd begin = Eigen::Map<const Eigen::VectorXd>(
+      plan.begin.data(), static_cast<Eigen::Index>(plan.begin.size()));
   Horizon horizon(model, set, simulation_options(plan, model));
 
   std::vector<ConstraintPointer> constraints = contact_schedule(plan, model);
@@ -237,7 +240,8 @@ TrajectoryProblem walker_problem(const Plan& plan, Aim aim) {
   Objective objective = objective_of(plan, aim, horizon, guess);
   const Eigen::VectorXd qdot0 = (guess.col(1) - guess.col(0)) / horizon.options().h;
   return TrajectoryProblem{.horizon = std::move(horizon),
-                           .map = std::move(map),
+                           .map = example::stretch_map(model, set, set.nominal(), leg_lengths(),
+                                                       plan.length_share, begin),
                            .objective = std::move(objective),
                            .constraints = std::move(constraints),
                            .controls = std::move(controls),

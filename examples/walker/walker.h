@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "examples/common/stretch.h"
 #include "hbar/adjoint/programs/transcription.h"
 #include "hbar/solvers/nlp/ipopt.h"
 
@@ -42,6 +43,9 @@ enum class Aim {
   kSmoothedCost,    ///< as below, with corners rounded widely and more weight on smooth torques
   kCostOfTransport  ///< work of the motors per weight and distance
 };
+
+/// Of the thighs and of the shanks: the same for both legs.
+[[nodiscard]] std::vector<example::FreeLength> leg_lengths();
 
 /// The coordinate that each coordinate is mirrored to: left_… and right_… change places. [dof]
 /// @throws InvalidInput if a coordinate has no counterpart

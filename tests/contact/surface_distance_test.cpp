@@ -9,6 +9,7 @@
 
 #include "hbar/core/base/error.h"
 #include "tests/support/duals.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
 

@@ -42,9 +42,10 @@ LAYERS = {
     "adjoint/outputs": (("contact",), ("eigen",)),
     "adjoint/trajectory": (("adjoint/stage", "adjoint/outputs", "solvers/newton"), ("eigen",)),
     "adjoint/terms": (("adjoint/trajectory",), ("eigen",)),
+    "adjoint/design": (("core/parameters",), ("eigen",)),
     "adjoint/derivatives": (("adjoint/terms", "solvers/nlp"), ("eigen",)),
     "adjoint/systems": (("adjoint/derivatives",), ("eigen",)),
-    "adjoint/programs": (("adjoint/derivatives",), ("eigen",)),
+    "adjoint/programs": (("adjoint/derivatives", "adjoint/design"), ("eigen",)),
     "adjoint/study": (("adjoint/programs", "core/files"), ("eigen", "posix")),
 }
 # Single files that may include more than their folder: the one place where scenes meet trajectories.

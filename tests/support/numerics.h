@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 namespace hbar::testing {
 
@@ -72,17 +71,6 @@ template <typename Function>
     sum_xy += x * y;
   }
   return (kPoints * sum_xy - sum_x * sum_y) / (kPoints * sum_xx - sum_x * sum_x);
-}
-
-/// The message of the Failure that a call throws; empty if it throws none.
-template <typename Failure, typename Call>
-[[nodiscard]] std::string message_of(const Call& call) {
-  try {
-    call();
-  } catch (const Failure& failure) {
-    return failure.what();
-  }
-  return {};
 }
 
 }  // namespace hbar::testing

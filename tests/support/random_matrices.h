@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hbar/solvers/linear/linear_solver.h"
+#include "tests/support/message_of.h"
 
 namespace hbar::solvers::testing {
 
@@ -63,15 +64,6 @@ inline SparseMatrix random_block_lower(const std::vector<int>& sizes, unsigned s
   return A;
 }
 
-/// The message of the Failure that a call throws; empty if it throws none.
-template <typename Failure, typename Call>
-std::string message_of(const Call& call) {
-  try {
-    call();
-  } catch (const Failure& failure) {
-    return failure.what();
-  }
-  return {};
-}
+using hbar::testing::message_of;
 
 }  // namespace hbar::solvers::testing

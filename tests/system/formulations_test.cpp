@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "hbar/adjoint/design/affine_map.h"
 #include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/adjoint/terms/constraint_terms.h"
 #include "hbar/adjoint/terms/objective_terms.h"
@@ -53,7 +54,7 @@ TrajectoryProblem reach_problem() {
   options.restarts = segment_starts(kReachSteps, kReachSegments);
   options.measurements = {MotorPower{"shoulder power", 0}};
   TrajectoryProblem out{.horizon = Horizon(model, set, options),
-                        .map = std::make_shared<IdentityDesignMap>(set),
+                        .map = parameter_map(set),
                         .objective = Objective(effort(0.1)),
                         .constraints = {},
                         .controls = {},

@@ -34,7 +34,7 @@ TEST(Identify, FindsTheTruthWithinThreeStandardDeviations) {
   EXPECT_LT(result.iterations, 30);
   const study::Information known = information_at(*program, recording, result.x);
   ASSERT_TRUE(known.complete()) << known.message;
-  const Eigen::VectorXd truth = rig.map->nominal();
+  const Eigen::VectorXd truth = rig.nominal;
   const Eigen::VectorXd error = known.estimate - truth;
   EXPECT_LT(error.cwiseQuotient(known.standard_deviations).lpNorm<Eigen::Infinity>(), 3.0)
       << estimate_table(known, rig.map->variables(), truth);
@@ -58,7 +58,7 @@ TEST(Identify, StatesTheCovarianceThatItsFitsScatterWith) {
     const solvers::IpoptResult result = solvers::solve_with_ipopt(*program, fit_options(recording));
     ASSERT_TRUE(result.converged()) << result.message;
     const study::Information known = information_at(*program, recording, result.x);
-    const Eigen::VectorXd error = known.estimate - rig.map->nominal();
+    const Eigen::VectorXd error = known.estimate - rig.nominal;
     sum += error.dot(known.fisher * error);
   }
   const double expected = 5.0 * kFits;
@@ -105,13 +105,10 @@ TEST(Identify, PassesIpoptsDerivativeChecker) {
 TEST(Identify, MapsAMassOntoMomentsToo) {
   const Rig rig = rig_of(20);
   const ParameterSet& set = rig.horizon.parameters();
-  EXPECT_LT((rig.map->parameters(rig.map->nominal()) - set.nominal()).norm(), 1e-15);
-  const Eigen::VectorXd p = rig.map->parameters(2.0 * rig.map->nominal());
+  EXPECT_LT((rig.map->parameters(rig.nominal) - set.nominal()).norm(), 1e-15);
+  const Eigen::VectorXd p = rig.map->parameters(2.0 * rig.nominal);
   EXPECT_DOUBLE_EQ(p[set.find("body.rod.inertia.y")],
                    2.0 * set[set.find("body.rod.inertia.y")].nominal);
-  const DesignMapCheck check = check_design_map(*rig.map, rig.map->variables().start);
-  EXPECT_LT(check.gap, 1e-9);
-  EXPECT_EQ(check.hessian_gap, 0.0);
 }
 
 TEST(Identify, TakesTheControlsOfATable) {
@@ -143,7 +140,7 @@ TEST(Identify, RefusesWhatItCannotUse) {
                InvalidInput);
   EXPECT_THROW(static_cast<void>(make_rig({.scene = kRig, .unknowns = {"body.rod.masss"}})),
                InvalidInput);
-  EXPECT_THROW(static_cast<void>(coverage({}, rig.map->nominal())), InvalidInput);
+  EXPECT_THROW(static_cast<void>(coverage({}, rig.nominal)), InvalidInput);
 }
 
 TEST(Identify, CountsTheIntervalsThatHoldTheTruth) {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "examples/walker/gait.h"
-#include "examples/walker/leg_map.h"
+#include "hbar/adjoint/design/check_design_map.h"
 #include "hbar/core/scene/build_model.h"
 #include "hbar/core/scene/read_xml.h"
 #include "hbar/solvers/nlp/hessian_check.h"
@@ -27,42 +27,37 @@ Plan coarse_plan(int steps, double duration) {
 
 TEST(Walker, MapsLengthsToBothLegs) {
   const Model model = walker_model();
-  const ParameterSet set = leg_parameters(model);
-  const LegMap map(model, set, 0.25);
-  const Eigen::Vector2d d(0.47, 0.31);
-  const DesignMapCheck check = check_design_map(map, d);
-  EXPECT_LT(check.gap, 1e-9);
-  EXPECT_TRUE(check.has_hessian);
-  EXPECT_EQ(check.hessian_gap, 0.0);
-  EXPECT_EQ((map.parameters(map.variables().start) - set.nominal()).norm(), 0.0);
-  for (Eigen::Index i = 0; i < set.size(); ++i) {
-    for (Eigen::Index k = 0; k < 2; ++k) {
-      EXPECT_EQ(map.depends(i, k), map.jacobian(d)(i, k) != 0.0);
-    }
-  }
+  const ParameterSet set =
+      ParameterSet::named(model, example::stretched_parameters(model, leg_lengths()));
+  EXPECT_EQ(set.size(), 12);
+  const DesignMapPointer map = example::stretch_map(model, set, set.nominal(), leg_lengths(), 0.25);
+  EXPECT_EQ((map->parameters(map->variables().start) - set.nominal()).norm(), 0.0);
+  EXPECT_EQ(map->variables().lower, Eigen::Vector2d::Constant(0.75 * 0.4));
 
-  LegMap held(model, set, 0.0);
-  held.begin_at(d);
-  EXPECT_EQ(held.variables().start, d);
-  EXPECT_EQ(held.variables().lower, d);
-  EXPECT_EQ(held.variables().upper, d);
+  const Eigen::Vector2d d(0.47, 0.31);
+  const DesignMapPointer held =
+      example::stretch_map(model, set, set.nominal(), leg_lengths(), 0.0, d);
+  EXPECT_EQ(held->variables().start, d);
+  EXPECT_EQ(held->variables().lower, d);
+  EXPECT_EQ(held->variables().upper, d);
 
   // The legs are those that a scene with these lengths would have: 1 kg per litre of each capsule,
   // joints at their ends, bodies in their middles.
+  const Eigen::VectorXd p = map->parameters(d);
   Mechanism<double> mechanism = nominal_mechanism<double>(model);
-  apply_parameters<double>(model, set, map.parameters(d), mechanism);
-  for (const std::string side : {"left_", "right_"}) {
-    const double radius[] = {0.05, 0.035};
-    for (std::size_t i = 0; i < 2; ++i) {
+  apply_parameters<double>(model, set, p, mechanism);
+  const double radius[] = {0.05, 0.035};
+  const std::vector<example::FreeLength> lengths = leg_lengths();
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (const example::Segment& segment : lengths[i].segments) {
       const double length = d[static_cast<Eigen::Index>(i)];
       const double r = radius[i];
-      const int link = model.find_body(side + segments()[i].name);
       const double volume = std::numbers::pi * r * r * (length + 4.0 / 3.0 * r);
-      EXPECT_NEAR(mechanism.mass[link], 1000.0 * volume, 1e-12);
-      const int next = set.find("joint." + side + segments()[i].next_joint + ".translation.y");
-      const int middle = set.find("body." + side + segments()[i].name + ".translation.y");
-      EXPECT_NEAR(map.parameters(d)[next], 0.4 - length, 1e-15);
-      EXPECT_NEAR(map.parameters(d)[middle], 0.5 * (0.4 - length), 1e-15);
+      EXPECT_NEAR(mechanism.mass[model.find_body(segment.body)], 1000.0 * volume, 1e-12);
+      EXPECT_NEAR(p[set.find("joint." + segment.next_joint + ".translation.y")], 0.4 - length,
+                  1e-15);
+      EXPECT_NEAR(p[set.find("body." + segment.body + ".translation.y")], 0.5 * (0.4 - length),
+                  1e-15);
     }
   }
 }

@@ -8,6 +8,7 @@
 #include "hbar/core/base/error.h"
 #include "hbar/core/parameters/parameter_kinds.h"
 #include "tests/support/input_vector.h"
+#include "tests/support/message_of.h"
 #include "tests/support/random_model.h"
 #include "tests/support/scenes.h"
 

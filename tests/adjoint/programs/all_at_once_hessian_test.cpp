@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "hbar/adjoint/design/affine_map.h"
 #include "hbar/adjoint/programs/all_at_once.h"
 #include "tests/adjoint/programs/transcription_problems.h"
 #include "tests/support/dense_nlp.h"
@@ -37,7 +38,7 @@ TrajectoryProblem bending_problem(const std::string& integrator, bool free_state
       MotorPower{"power again", 0},
       CentreOfMass{"centre"}};
   problem.horizon = Horizon(model, set, options);
-  problem.map = std::make_shared<IdentityDesignMap>(set);
+  problem.map = parameter_map(set);
   problem.objective = Objective(squared_variables(0.1));
   problem.objective.add(effort(0.2)).add(squared_velocity(0.3));
   problem.constraints = {testing::every_number(problem.horizon)};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "hbar/adjoint/design/affine_map.h"
 #include "hbar/adjoint/programs/shooting.h"
 #include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/adjoint/trajectory/integrator.h"
@@ -12,6 +13,7 @@
 #include "hbar/core/base/error.h"
 #include "tests/adjoint/programs/transcription_problems.h"
 #include "tests/support/dense_nlp.h"
+#include "tests/support/message_of.h"
 
 namespace hbar {
 namespace {
@@ -200,7 +202,7 @@ TEST(AllAtOnce, RefusesAFirstGuessThatChangesChart) {
   const ParameterSet none;
   TrajectoryProblem spinning{
       .horizon = Horizon(problem.horizon.model(), none, problem.horizon.options()),
-      .map = std::make_shared<IdentityDesignMap>(none),
+      .map = parameter_map(none),
       .objective = Objective(squared_velocity()),
       .constraints = {},
       .controls = {},

@@ -4,8 +4,10 @@
 
 #include <utility>
 
+#include "hbar/adjoint/design/affine_map.h"
 #include "hbar/adjoint/terms/constraint_terms.h"
 #include "hbar/core/base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
@@ -25,7 +27,7 @@ TrajectoryProblem held_problem(bool free_state) {
   const ParameterSet set =
       ParameterSet::named(model, {"body.lower.mass", "body.lower.inertia", "joint.elbow.damping"});
   TrajectoryProblem out{.horizon = Horizon(model, set, testing::options_of("bdf1", 0.02, 7)),
-                        .map = std::make_shared<InertiaChart>(set),
+                        .map = inertia_chart(set),
                         .objective = {},
                         .constraints = {},
                         .controls = {},

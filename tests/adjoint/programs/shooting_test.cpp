@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "hbar/adjoint/design/affine_map.h"
 #include "hbar/adjoint/terms/objective_terms.h"
 #include "hbar/solvers/nlp/gradient_check.h"
 #include "tests/support/numerics.h"
@@ -42,7 +43,7 @@ TrajectoryProblem small_parts(const std::string& integrator) {
   HeldControls controls;
   controls.hold = 4;
   controls.start = problem.inputs.u.leftCols(4);
-  auto map = std::make_shared<InertiaChart>(set);
+  auto map = inertia_chart(set);
   return {.horizon = Horizon(model, set, options),
           .map = std::move(map),
           .objective = problem.objective,
@@ -153,7 +154,7 @@ TEST(Shooting, ControlsAMechanismThatIsNotDesigned) {
   TrajectoryProblem parts = small_parts("bdf2");
   const Model model = parts.horizon.model();
   parts.horizon = Horizon(model, ParameterSet(), parts.horizon.options());
-  parts.map = std::make_shared<IdentityDesignMap>(ParameterSet());
+  parts.map = parameter_map(ParameterSet());
   parts.constraints.erase(parts.constraints.begin() + 3);  // on parameters
   parts.controls.scale = Eigen::VectorXd::Constant(model.control_count(), 0.5);
   Shooting problem(parts, {});

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "hbar/adjoint/design/affine_map.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/scenes.h"
 
@@ -18,7 +20,7 @@ TrajectoryProblem guessed_problem(Model model) {
   const Eigen::Index controls = model.control_count();
   TrajectoryProblem out{
       .horizon = Horizon(std::move(model), set, testing::options_of("bdf2", 0.02, kGuessedSteps)),
-      .map = std::make_shared<IdentityDesignMap>(set),
+      .map = parameter_map(set),
       .objective = {},
       .constraints = {},
       .controls = {},

@@ -8,6 +8,7 @@
 #include "hbar/core/base/error.h"
 #include "tests/adjoint/programs/transcription_problems.h"
 #include "tests/support/dense_nlp.h"
+#include "tests/support/message_of.h"
 
 namespace hbar {
 namespace {
@@ -99,16 +100,16 @@ TEST_P(EveryFormulationsHessian, OfGaussNewtonDoesNotAskConstraintsAndTheDesignM
   /// Parameters as they are, of which nobody says how they bend.
   class Unbent final : public DesignMap {
    public:
-    explicit Unbent(const ParameterSet& set) : map_(set) {}
-    [[nodiscard]] const DesignVariables& variables() const override { return map_.variables(); }
-    [[nodiscard]] Eigen::Index parameter_count() const override { return map_.parameter_count(); }
+    explicit Unbent(const ParameterSet& set) : map_(parameter_map(set)) {}
+    [[nodiscard]] const DesignVariables& variables() const override { return map_->variables(); }
+    [[nodiscard]] Eigen::Index parameter_count() const override { return map_->parameter_count(); }
     [[nodiscard]] Eigen::VectorXd parameters(const Eigen::VectorXd& d) const override { return d; }
     [[nodiscard]] Eigen::MatrixXd jacobian(const Eigen::VectorXd& d) const override {
-      return map_.jacobian(d);
+      return map_->jacobian(d);
     }
 
    private:
-    IdentityDesignMap map_;
+    DesignMapPointer map_;
   };
   problem.constraints.pop_back();
   problem.map = std::make_shared<Unbent>(problem.horizon.parameters());

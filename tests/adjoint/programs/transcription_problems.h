@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "hbar/adjoint/design/affine_map.h"
 #include "hbar/adjoint/programs/trajectory_problem.h"
 #include "hbar/adjoint/terms/constraint_terms.h"
 #include "hbar/adjoint/terms/generic_terms.h"
@@ -27,7 +28,7 @@ namespace hbar::testing {
   options.measurements = std::move(measurements);
   const int steps = options.steps;
   TrajectoryProblem out{.horizon = Horizon(model, set, options),
-                        .map = std::make_shared<InertiaChart>(set),
+                        .map = inertia_chart(set),
                         .objective = problem.objective,
                         .constraints = {},
                         .controls = {},

@@ -6,6 +6,7 @@
 #include "hbar/core/base/error.h"
 #include "tests/adjoint/programs/transcription_problems.h"
 #include "tests/support/dense_nlp.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 
 namespace hbar {

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "hbar/adjoint/design/affine_map.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/model/model_builder.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
 #include "tests/support/small_problems.h"
@@ -71,7 +73,8 @@ TEST(Identification, OfGravityAndInitialStateIsTheClosedForm) {
   Slider slider(0.0, {"gravity.x"});
   const Eigen::VectorXd d = Eigen::VectorXd::Constant(1, 3.0);
   const TrajectoryData data = slider.positions(d);
-  const IdentityDesignMap map(slider.horizon().parameters());
+  const DesignMapPointer pointer = parameter_map(slider.horizon().parameters());
+  const DesignMap& map = *pointer;
   const double sigma = 0.02;
   const Information out =
       fisher_information(slider.horizon(), slider.roll(d), map, d, data,
@@ -92,7 +95,8 @@ TEST(Identification, CannotTellMassFromDampingByMotionAlone) {
   Slider slider(0.6, {"body.block.mass", "joint.slider.damping"});
   const Eigen::VectorXd d = slider.horizon().parameters().nominal();
   const TrajectoryData data = slider.positions(d);
-  const IdentityDesignMap map(slider.horizon().parameters());
+  const DesignMapPointer pointer = parameter_map(slider.horizon().parameters());
+  const DesignMap& map = *pointer;
   const Information out =
       fisher_information(slider.horizon(), slider.roll(d), map, d, data, Eigen::VectorXd::Ones(1));
   ASSERT_EQ(out.silent.cols(), 1);
@@ -107,7 +111,8 @@ TEST(Identification, CannotTellMassFromDampingByMotionAlone) {
 TEST(Identification, ReadsMeasurementsAsItReadsRates) {
   Slider slider(0.6, {"gravity.x", "joint.slider.damping"});
   const Eigen::VectorXd d = slider.horizon().parameters().nominal();
-  const IdentityDesignMap map(slider.horizon().parameters());
+  const DesignMapPointer pointer = parameter_map(slider.horizon().parameters());
+  const DesignMap& map = *pointer;
   TrajectoryData data;
   data.places = {{ValueField::kMeasured, 7, 0}, {ValueField::kQdot, 7, 0}};
   data.column = {0, 1};
@@ -125,7 +130,8 @@ TEST(Identification, ForeseesHowFitsOfDampingScatter) {
   const Eigen::VectorXd truth = Eigen::VectorXd::Constant(1, 1.5);
   TrajectoryData data = slider.positions(truth);
   const Eigen::VectorXd exact = data.data;
-  const IdentityDesignMap map(slider.horizon().parameters());
+  const DesignMapPointer pointer = parameter_map(slider.horizon().parameters());
+  const DesignMap& map = *pointer;
   const Information foreseen = fisher_information(slider.horizon(), slider.roll(truth), map, truth,
                                                   data, Eigen::VectorXd::Constant(1, sigma));
   ASSERT_TRUE(foreseen.complete());
@@ -184,7 +190,8 @@ class IdentificationOfSmallProblem : public ::testing::Test {
 };
 
 TEST_F(IdentificationOfSmallProblem, HasSensitivitiesThatAreDerivatives) {
-  const IdentityDesignMap map(problem_.horizon.parameters());
+  const DesignMapPointer pointer = parameter_map(problem_.horizon.parameters());
+  const DesignMap& map = *pointer;
   const Trajectory trajectory = simulate(problem_.horizon, problem_.inputs).trajectory();
   const Eigen::MatrixXd ours =
       data_sensitivity(problem_.horizon, trajectory, map, problem_.inputs.p, data_, true);
@@ -229,7 +236,8 @@ TEST_F(IdentificationOfSmallProblem, RefusesWhatDoesNotFit) {
   EXPECT_THROW((void)measured_data_term(data_, Eigen::VectorXd::Ones(2)), InvalidInput);
   EXPECT_THROW((void)measured_data_term(data_, -one), InvalidInput);
   EXPECT_THROW((void)measured_data_term(data_, one, testing::kNan), InvalidInput);
-  const IdentityDesignMap map(problem_.horizon.parameters());
+  const DesignMapPointer pointer = parameter_map(problem_.horizon.parameters());
+  const DesignMap& map = *pointer;
   const Trajectory trajectory = simulate(problem_.horizon, problem_.inputs).trajectory();
   const auto refusal = [&](const Eigen::VectorXd& d) {
     return testing::message_of<InvalidInput>(

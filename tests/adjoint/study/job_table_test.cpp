@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hbar/core/base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 
 namespace hbar::study {

@@ -12,6 +12,7 @@
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/text_file.h"
 #include "hbar/solvers/nlp/ipopt.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"

@@ -4,6 +4,7 @@
 
 #include "hbar/core/files/atomic_file.h"
 #include "hbar/core/files/text_file.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"

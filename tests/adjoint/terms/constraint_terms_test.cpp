@@ -4,6 +4,7 @@
 
 #include "hbar/adjoint/terms/check_terms.h"
 #include "hbar/core/base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
 #include "tests/support/small_problems.h"

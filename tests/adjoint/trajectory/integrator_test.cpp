@@ -7,6 +7,7 @@
 #include <map>
 
 #include "hbar/core/base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 
 namespace hbar {

@@ -10,6 +10,7 @@
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/chart.h"
 #include "hbar/core/base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random_model.h"
 #include "tests/support/scenes.h"

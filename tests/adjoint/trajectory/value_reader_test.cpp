@@ -9,6 +9,7 @@
 #include "hbar/adjoint/derivatives/tangent.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
 #include "tests/support/small_problems.h"

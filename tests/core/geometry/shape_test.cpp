@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hbar/core/base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 
 namespace hbar {

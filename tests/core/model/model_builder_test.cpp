@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "hbar/core/base/error.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random_model.h"
 

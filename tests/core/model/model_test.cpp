@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random_model.h"
 

@@ -9,6 +9,7 @@
 #include "hbar/core/base/error.h"
 #include "hbar/core/geometry/surface_points.h"
 #include "hbar/core/parameters/parameter_kinds.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random_model.h"
 
@@ -387,7 +388,7 @@ TEST(ApplyParameters, RefusesVectorsAndBodiesThatCannotBe) {
             "body.shin.mass is 0; it must be positive");
   const std::string moments =
       "); moments must be positive and none may exceed the sum of the other two (see "
-      "InertiaChart for a chart that keeps to that)";
+      "inertia_chart for a chart that keeps to that)";
   EXPECT_EQ(message("body.shin.inertia", Eigen::Vector3d(1.0, 1.0, 3.0)),
             "body.shin.inertia is (1 1 3" + moments);
   EXPECT_EQ(message("body.shin.inertia", Eigen::Vector3d(1.0, -1.0, 1.0)),

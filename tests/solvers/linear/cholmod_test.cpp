@@ -6,6 +6,7 @@
 
 #include "hbar/solvers/linear/klu.h"
 #include "tests/solvers/linear/solver_checks.h"
+#include "tests/support/message_of.h"
 
 namespace hbar::solvers {
 namespace {

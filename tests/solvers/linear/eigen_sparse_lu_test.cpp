@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/solvers/linear/structured_matrices.h"
+#include "tests/support/message_of.h"
 
 namespace hbar::solvers {
 namespace {

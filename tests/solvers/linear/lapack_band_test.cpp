@@ -4,6 +4,7 @@
 
 #include "hbar/solvers/linear/block_banded.h"
 #include "tests/solvers/linear/structured_matrices.h"
+#include "tests/support/message_of.h"
 
 namespace hbar::solvers {
 namespace {

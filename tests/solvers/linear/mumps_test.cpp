@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "tests/solvers/linear/structured_matrices.h"
+#include "tests/support/message_of.h"
 
 namespace hbar::solvers {
 namespace {

@@ -9,6 +9,7 @@
 #include "hbar/solvers/linear/accuracy.h"
 #include "hbar/solvers/linear/solver_suite.h"
 #include "tests/solvers/linear/structured_matrices.h"
+#include "tests/support/message_of.h"
 
 namespace hbar::solvers {
 namespace {

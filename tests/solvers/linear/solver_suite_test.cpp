@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tests/solvers/linear/structured_matrices.h"
+#include "tests/support/message_of.h"
 
 namespace hbar::solvers {
 namespace {

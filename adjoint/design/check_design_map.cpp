@@ -1,4 +1,4 @@
-#include "hbar/adjoint/programs/design_map.h"
+#include "hbar/adjoint/design/check_design_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,24 +8,6 @@
 
 namespace hbar {
 namespace {
-
-DesignVariables identity_variables(const ParameterSet& set) {
-  DesignVariables out;
-  for (const Parameter& parameter : set.parameters()) {
-    out.names.push_back(parameter.name);
-    out.units.push_back(parameter.unit);
-  }
-  out.start = set.nominal();
-  out.lower = set.lower();
-  out.upper = set.upper();
-  out.scale = out.start.unaryExpr([](double x) { return x != 0.0 ? std::abs(x) : 1.0; });
-  return out;
-}
-
-/// I = kMoments s.
-Eigen::Matrix3d moments_of_second_moments() {
-  return Eigen::Matrix3d::Ones() - Eigen::Matrix3d::Identity();
-}
 
 /// Norms of a Jacobian's rows, in units of the scale; 1 where a row is zero.
 Eigen::VectorXd row_norms(const Eigen::MatrixXd& scaled_jacobian) {
@@ -109,72 +91,6 @@ void check_map_hessian(const DesignMap& map, const Eigen::VectorXd& d, const Eig
 }
 
 }  // namespace
-
-Eigen::MatrixXd DesignMap::hessian(const Eigen::VectorXd&, const Eigen::VectorXd&) const {
-  throw InvalidInput(
-      "design map: it has no second derivatives; implement hessian(), or use the limited-memory "
-      "Hessian");
-}
-
-IdentityDesignMap::IdentityDesignMap(const ParameterSet& set)
-    : variables_(identity_variables(set)) {}
-
-Eigen::MatrixXd IdentityDesignMap::jacobian(const Eigen::VectorXd& d) const {
-  return Eigen::MatrixXd::Identity(d.size(), d.size());
-}
-
-InertiaChart::InertiaChart(const ParameterSet& set, double least_share)
-    : variables_(identity_variables(set)) {
-  if (!(least_share > 0.0) || !(least_share < 0.5)) {
-    throw InvalidInput(
-        concat("InertiaChart: least_share is ", least_share, "; it must be in (0, 0.5)"));
-  }
-  for (const ParameterBlock& block : set.blocks()) {
-    if (block.kind != ParameterKind::kInertia) {
-      continue;
-    }
-    if (block.size != 3) {
-      throw InvalidInput(concat("InertiaChart: '", set[block.first].name,
-                                "' is in the set without the body's other moments; name all three "
-                                "or none"));
-    }
-    first_moments_.push_back(block.first);
-    const Eigen::Vector3d I = variables_.start.segment<3>(block.first);
-    const double least = least_share * I.maxCoeff();
-    for (int k = 0; k < 3; ++k) {
-      std::string& name = variables_.names[static_cast<std::size_t>(block.first + k)];
-      name.replace(name.rfind("inertia"), 7, "second_moment");
-    }
-    variables_.start.segment<3>(block.first) = (0.5 * I.sum() - I.array()).cwiseMax(least).matrix();
-    variables_.lower.segment<3>(block.first).setConstant(least);
-    variables_.scale.segment<3>(block.first).setConstant(0.5 * I.maxCoeff());
-  }
-}
-
-bool InertiaChart::depends(Eigen::Index parameter, Eigen::Index variable) const {
-  for (const Eigen::Index first : first_moments_) {
-    if (parameter >= first && parameter < first + 3 && variable >= first && variable < first + 3) {
-      return parameter != variable;
-    }
-  }
-  return parameter == variable;
-}
-
-Eigen::VectorXd InertiaChart::parameters(const Eigen::VectorXd& d) const {
-  Eigen::VectorXd p = d;
-  for (const Eigen::Index first : first_moments_) {
-    p.segment<3>(first) = moments_of_second_moments() * d.segment<3>(first);
-  }
-  return p;
-}
-
-Eigen::MatrixXd InertiaChart::jacobian(const Eigen::VectorXd& d) const {
-  Eigen::MatrixXd J = Eigen::MatrixXd::Identity(d.size(), d.size());
-  for (const Eigen::Index first : first_moments_) {
-    J.block<3, 3>(first, first) = moments_of_second_moments();
-  }
-  return J;
-}
 
 DesignMapCheck check_design_map(const DesignMap& map, const Eigen::VectorXd& d) {
   const DesignVariables& variables = map.variables();

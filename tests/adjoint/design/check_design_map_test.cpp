@@ -1,17 +1,11 @@
-#include "hbar/adjoint/programs/design_map.h"
+#include "hbar/adjoint/design/check_design_map.h"
 
 #include <gtest/gtest.h>
 
-#include <memory>
-
-#include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
-#include "tests/support/small_problems.h"
 
 namespace hbar {
 namespace {
-
-using testing::small_model;
 
 /// p = (d₀ d₁, d₀³), with an error in one entry of its Jacobian.
 class Products : public DesignMap {
@@ -97,64 +91,6 @@ TEST(CheckDesignMap, ConvictsAnErrorOfOnePartInAHundredThousand) {
 TEST(CheckDesignMap, RefusesAWrongSize) {
   EXPECT_THROW(static_cast<void>(check_design_map(Products(0.0), Eigen::VectorXd::Ones(3))),
                InvalidInput);
-}
-
-TEST(IdentityDesignMap, IsTheParametersWithTheirBounds) {
-  const ParameterSet set = ParameterSet::all(small_model());
-  const IdentityDesignMap map(set);
-  EXPECT_EQ(map.variables().start, set.nominal());
-  EXPECT_EQ(map.variables().lower, set.lower());
-  EXPECT_EQ(map.variables().names[3], set[3].name);
-  EXPECT_EQ(map.variables().units[3], set[3].unit);
-  EXPECT_GT(map.variables().scale.minCoeff(), 0.0);
-  EXPECT_EQ(map.parameters(set.nominal()), set.nominal());
-  const DesignMapCheck check = check_design_map(map, set.nominal());
-  EXPECT_LT(check.gap, 1e-9);
-  EXPECT_TRUE(check.has_hessian);
-  EXPECT_EQ(check.hessian_gap, 0.0);
-}
-
-TEST(InertiaChart, StartsAtTheNominalBodyAndIsRight) {
-  const Model model = small_model();
-  const ParameterSet set = ParameterSet::all(model);
-  const InertiaChart chart(set);
-  const Eigen::VectorXd start = chart.variables().start;
-  EXPECT_LT((chart.parameters(start) - set.nominal()).norm(), 1e-12);
-  const DesignMapCheck check = check_design_map(chart, start);
-  EXPECT_LT(check.gap, 1e-9);
-  EXPECT_GT(check.slope, 1.9);
-  EXPECT_TRUE(check.has_hessian);
-  EXPECT_EQ(check.hessian_gap, 0.0);
-  const int ix = set.find("body.arm.inertia.x");
-  EXPECT_EQ(chart.variables().names[static_cast<std::size_t>(ix)], "body.arm.second_moment.x");
-}
-
-TEST(InertiaChart, KeepsEveryPointWithinItsBoundsPhysical) {
-  const Model model = small_model();
-  const ParameterSet set = ParameterSet::named(model, {"body.arm.inertia", "body.hand.inertia"});
-  const InertiaChart chart(set);
-  Horizon horizon(model, set, {.integrator = "bdf1", .h = 0.01, .steps = 1});
-  Inputs inputs = horizon.nominal_inputs();
-  for (int corner = 0; corner < 8; ++corner) {
-    Eigen::VectorXd d = chart.variables().lower;
-    for (int k = 0; k < 3; ++k) {
-      if ((corner & (1 << k)) != 0) {
-        d[k] *= 1e4;
-      }
-    }
-    inputs.p = chart.parameters(d);
-    EXPECT_NO_THROW(static_cast<void>(simulate(horizon, inputs))) << corner;
-  }
-  inputs.p = set.nominal();
-  inputs.p[0] *= 10.0;  // without the chart: more than the sum of the other two
-  EXPECT_THROW(static_cast<void>(simulate(horizon, inputs)), InvalidInput);
-}
-
-TEST(InertiaChart, RefusesHalfABodyAndAnImpossibleShare) {
-  const Model model = small_model();
-  EXPECT_THROW(InertiaChart(ParameterSet::named(model, {"body.arm.inertia.x"})), InvalidInput);
-  EXPECT_THROW(InertiaChart(ParameterSet::all(model), 0.0), InvalidInput);
-  EXPECT_THROW(InertiaChart(ParameterSet::all(model), 0.7), InvalidInput);
 }
 
 }  // namespace
