@@ -55,12 +55,26 @@ foreach(layer IN LISTS HBAR_LAYERS)
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${layer} ${HBAR_INCLUDE_DIR}/hbar/${layer} SYMBOLIC)
 endforeach()
 
+# What users include: all that needs no component, then a header per component, as "hbar/name.h".
+set(HBAR_USER_HEADERS adjoint/hbar.h adjoint/study.h solvers/ipopt.h solvers/nlopt.h solvers/suite.h
+    solvers/umfpack.h)
+foreach(header IN LISTS HBAR_USER_HEADERS)
+  get_filename_component(name ${header} NAME)
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${header} ${HBAR_INCLUDE_DIR}/hbar/${name} SYMBOLIC)
+endforeach()
+
 # An optional part has an export set of its own: who does without it needs none of its dependencies.
 # One that uses another comes after it.
 set(HBAR_OPTIONAL_COMPONENTS umfpack ipopt nlopt suite study)
+# What a build without one says is needed for it.
+set(HBAR_NEEDS_umfpack "libsuitesparse-dev and -DHBAR_WITH_UMFPACK=ON")
+set(HBAR_NEEDS_ipopt "coinor-libipopt-dev, pkg-config and -DHBAR_WITH_IPOPT=ON")
+set(HBAR_NEEDS_nlopt "libnlopt-dev and -DHBAR_WITH_NLOPT=ON")
+set(HBAR_NEEDS_suite "-DHBAR_WITH_SUITE=ON")
+set(HBAR_NEEDS_study "hbar::ipopt: ${HBAR_NEEDS_ipopt}")
 
-# hbar_leave_out(NAMES...): what this build goes without. Headers NAME.h are not installed, tests
-# NAME*_test.cpp not compiled.
+# hbar_leave_out(NAMES...): what this build goes without. Tests NAME*_test.cpp are not compiled; a
+# component NAME is not there, and its header says so.
 function(hbar_leave_out)
   set_property(GLOBAL APPEND PROPERTY HBAR_LEFT_OUT ${ARGN})
 endfunction()

@@ -1,14 +1,47 @@
-# Installation: headers under include/hbar/LAYER, libraries, and find_package(hbar).
+# Installation: libraries, find_package(hbar), and under include/hbar the headers that users include
+# with all that these include. No other header is anybody's business.
 
-set(not_built)
-get_property(left_out GLOBAL PROPERTY HBAR_LEFT_OUT)
-foreach(name IN LISTS left_out)
-  list(APPEND not_built PATTERN ${name}.h EXCLUDE)
+# hbar_closure(OUT HEADERS...): the headers, and those of the layers that they include.
+function(hbar_closure out)
+  set(found)
+  set(waiting ${ARGN})
+  while(waiting)
+    list(POP_FRONT waiting header)
+    if(NOT header IN_LIST found)
+      list(APPEND found ${header})
+      set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+                   ${PROJECT_SOURCE_DIR}/${header})
+      file(STRINGS ${PROJECT_SOURCE_DIR}/${header} lines REGEX "^#include \"hbar/")
+      foreach(line IN LISTS lines)
+        string(REGEX REPLACE "^#include \"hbar/(.*)\".*" "\\1" included ${line})
+        list(APPEND waiting ${included})
+      endforeach()
+    endif()
+  endwhile()
+  set(${out} ${found} PARENT_SCOPE)
+endfunction()
+
+set(users ${HBAR_USER_HEADERS})
+foreach(component IN LISTS HBAR_OPTIONAL_COMPONENTS)
+  if(NOT TARGET hbar_${component})
+    list(FILTER users EXCLUDE REGEX "/${component}\\.h$")
+    # Whoever includes its header learns what is missing.
+    set(HBAR_MISSING ${component})
+    set(HBAR_MISSING_NEEDS ${HBAR_NEEDS_${component}})
+    configure_file(${PROJECT_SOURCE_DIR}/cmake/missing_component.h.in
+                   ${PROJECT_BINARY_DIR}/missing/${component}.h)
+    install(FILES ${PROJECT_BINARY_DIR}/missing/${component}.h
+            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hbar)
+  endif()
 endforeach()
-foreach(layer IN LISTS HBAR_LAYERS)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${layer}/
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hbar/${layer}
-          FILES_MATCHING PATTERN "*.h" ${not_built})
+hbar_closure(headers ${users})
+foreach(header IN LISTS headers)
+  get_filename_component(folder ${header} DIRECTORY)
+  if(header IN_LIST users)
+    set(folder)
+  endif()
+  install(FILES ${PROJECT_SOURCE_DIR}/${header}
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hbar/${folder})
 endforeach()
 
 set(HBAR_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/hbar)

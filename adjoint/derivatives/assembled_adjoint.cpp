@@ -34,4 +34,9 @@ Gradient AssembledAdjoint::gradient(const Trajectory& trajectory, const Objectiv
   return out;
 }
 
+Gradient gradient(const Horizon& horizon, const Trajectory& trajectory, const Objective& objective,
+                  const solvers::SolverFactory& factory) {
+  return AssembledAdjoint(horizon, factory).gradient(trajectory, objective);
+}
+
 }  // namespace hbar

@@ -3,6 +3,7 @@
 #include "hbar/adjoint/derivatives/factorized_linearization.h"
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
+#include "hbar/solvers/linear/solver_choice.h"
 
 namespace hbar {
 
@@ -35,5 +36,15 @@ class AssembledAdjoint {
   FactorizedLinearization system_;
   Eigen::VectorXd z_bar_;
 };
+
+/// dΨ of a trajectory by the assembled H̄ and a solver of choice: one AssembledAdjoint.
+///
+///     gradient(horizon, trajectory, objective, solver_factory("umfpack"))
+///
+/// @throws NumericalFailure as AssembledAdjoint::gradient
+[[nodiscard]] Gradient gradient(const Horizon& horizon, const Trajectory& trajectory,
+                                const Objective& objective, const solvers::SolverFactory& factory);
+
+using solvers::solver_factory;
 
 }  // namespace hbar

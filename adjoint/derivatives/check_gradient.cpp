@@ -207,7 +207,7 @@ class PieceReader {
 /// Everything the probes of one problem share.
 class Prober {
  public:
-  Prober(Problem& problem, const GradientCheckOptions& options)
+  Prober(const Problem& problem, const GradientCheckOptions& options)
       : problem_(problem),
         options_(options),
         horizon_(tightened(problem.horizon)),
@@ -343,7 +343,7 @@ class Prober {
     }
   }
 
-  Problem& problem_;
+  const Problem& problem_;
   const GradientCheckOptions& options_;
   Horizon horizon_;
   PieceReader pieces_;
@@ -385,7 +385,7 @@ std::string GradientCheckReport::table() const {
   return out.str();
 }
 
-GradientCheckReport check_gradient(Problem& problem, const GradientCheckOptions& options) {
+GradientCheckReport check_gradient(const Problem& problem, const GradientCheckOptions& options) {
   Prober prober(problem, options);
   GradientCheckReport report;
   for (const InputClass& inputs : input_classes(problem)) {

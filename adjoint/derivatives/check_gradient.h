@@ -43,7 +43,7 @@ struct GradientCheckReport {
 /// Newton is tightened for it. Costs some forty simulations per class and direction.
 ///
 /// @throws NumericalFailure if the nominal simulation does not converge
-[[nodiscard]] GradientCheckReport check_gradient(Problem& problem,
+[[nodiscard]] GradientCheckReport check_gradient(const Problem& problem,
                                                  const GradientCheckOptions& options = {});
 
 }  // namespace hbar

@@ -29,7 +29,7 @@ struct LoadOptions {
   std::optional<double> h;                ///< time step, time, > 0; else the scene's
   int steps = 100;                        ///< N ≥ 1
   std::optional<double> newton_tol;       ///< on ‖g‖₂, > 0; else the scene's
-  /// Of the gradient, a name of solvers/linear/solver_suite.h, "auto" or "sweep"; else the scene's.
+  /// Of the gradient, as solver_factory has it, "auto" or "sweep"; else the scene's.
   std::optional<std::string> linear_solver;
   ParameterChoice parameters = ParameterChoice::kMask;
   std::vector<std::string> parameter_names;  ///< as ParameterSet::named; kNamed only

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "hbar/adjoint/terms/place.h"
 #include "hbar/adjoint/terms/value_access.h"
 #include "hbar/core/base/error.h"
-#include "hbar/core/base/nearest_name.h"
 #include "hbar/core/model/model.h"
 #include "hbar/core/parameters/parameters.h"
 
@@ -120,18 +120,6 @@ ConstraintTerm::ConstraintTerm(ConstraintRows rows, std::vector<PartialPlace> pl
 
 void ConstraintTerm::second_partials(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>) const {}
 
-int first_variable(const Model& model, const std::string& end_effector, const std::string& who) {
-  std::vector<std::string> known;
-  for (const EndEffector& candidate : model.end_effectors()) {
-    if (candidate.name == end_effector) {
-      return 3 * static_cast<int>(known.size());
-    }
-    known.push_back(candidate.name);
-  }
-  throw InvalidInput(concat(who, ": the model has no end effector '", end_effector, "'; ",
-                            unknown_name_hint(end_effector, known)));
-}
-
 ConstraintPointer variable_at_step(const Model& model, const std::string& end_effector, int step,
                                    const Eigen::Vector3d& target, double half_width) {
   require_step("variable_at_step", step);
@@ -140,7 +128,7 @@ ConstraintPointer variable_at_step(const Model& model, const std::string& end_ef
                               "; the target must be finite and the half width ≥ 0"));
   }
   constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
-  const int first = first_variable(model, end_effector, "variable_at_step");
+  const int first = place::end_effector(model, end_effector, kX, step).index;
   std::vector<std::string> names;
   std::vector<PartialPlace> places;
   std::vector<double> lower;

@@ -57,13 +57,6 @@ class ConstraintTerm {
 
 using ConstraintPointer = std::shared_ptr<const ConstraintTerm>;
 
-/// Where the x of an end effector's position stands among the auxiliary variables; y and z follow.
-///
-/// @param who  asks, for the message
-/// @throws InvalidInput naming the nearest end effector if the model has no such one
-[[nodiscard]] int first_variable(const Model& model, const std::string& end_effector,
-                                 const std::string& who);
-
 /// The position of an end effector at the end of a step: target − half_width ≤ v ≤ target +
 /// half_width for each of x, y, z. A half width of 0 makes three equations.
 ///

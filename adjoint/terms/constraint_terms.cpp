@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "hbar/adjoint/terms/place.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/model/model.h"
 #include "hbar/core/parameters/parameters.h"
@@ -98,7 +99,7 @@ ConstraintPointer variable_limits(const Model& model, const std::string& end_eff
                                   const std::vector<int>& steps, const Eigen::Vector3d& lower,
                                   const Eigen::Vector3d& upper) {
   constexpr std::array<const char*, 3> kAxisNames = {".x at step ", ".y at step ", ".z at step "};
-  const int first = first_variable(model, end_effector, "variable_limits");
+  const int first = place::end_effector(model, end_effector, kX, 0).index;
   RowBuilder rows;
   for (const int step : steps) {
     for (int axis = 0; axis < 3; ++axis) {

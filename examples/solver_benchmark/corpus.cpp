@@ -9,7 +9,7 @@
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/atomic_file.h"
 #include "hbar/solvers/linear/accuracy.h"
-#include "hbar/solvers/linear/solver_suite.h"
+#include "hbar/suite.h"
 #include "matrix_market.h"
 #include "measure.h"
 #include "sidecar.h"

@@ -14,7 +14,7 @@
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 #include "hbar/solvers/linear/accuracy.h"
-#include "hbar/solvers/linear/solver_suite.h"
+#include "hbar/suite.h"
 
 namespace {
 
@@ -72,7 +72,7 @@ int main() {
   // 3. Every solver that is meant for a system of this structure.
   std::printf("%-20s %8s %9s %8s %11s   %s\n", "ms", "analyse", "factorise", "solve", "entries",
               "backward error");
-  for (const hbar::solvers::SolverEntry& entry : hbar::solvers::solver_suite()) {
+  for (const hbar::solvers::SolverEntry& entry : hbar::solvers::available_solvers()) {
     if (entry.claims(system.options.structure)) {
       compare(entry, system);
     }

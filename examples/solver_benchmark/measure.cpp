@@ -9,7 +9,7 @@
 #include "hbar/core/base/error.h"
 #include "hbar/solvers/linear/accuracy.h"
 #include "hbar/solvers/linear/klu.h"
-#include "hbar/solvers/linear/solver_suite.h"
+#include "hbar/suite.h"
 
 namespace hbar::solver_benchmark {
 namespace {

@@ -60,7 +60,7 @@ struct Measurement {
 
 /// Measures a solver. What the solver refuses is not thrown but told in Measurement::failure.
 ///
-/// @param solver  a name of solver_suite(), or "auto"
+/// @param solver  a name of available_solvers(), or "auto"
 [[nodiscard]] Measurement measure(const BenchmarkMatrix& matrix, const Reference& reference,
                                   const std::string& solver, solvers::Ordering ordering,
                                   const MeasureOptions& options);

@@ -4,7 +4,7 @@
 
 #include "corpus.h"
 #include "hbar/core/base/error.h"
-#include "hbar/solvers/linear/solver_suite.h"
+#include "hbar/suite.h"
 
 namespace hbar::solver_benchmark {
 namespace {
@@ -27,7 +27,7 @@ std::vector<Entrant> entrants(const BenchmarkPlan& plan, solvers::Structure stru
   std::vector<std::string> names = plan.solvers;
   if (names.empty()) {
     names.emplace_back("auto");
-    for (const solvers::SolverEntry& entry : solvers::solver_suite()) {
+    for (const solvers::SolverEntry& entry : solvers::available_solvers()) {
       if (entry.claims(structure)) {
         names.push_back(entry.name);
       }

@@ -10,7 +10,8 @@ namespace hbar::solver_benchmark {
 struct BenchmarkPlan {
   std::vector<Case> cases;
   std::vector<std::filesystem::path> files;  ///< Matrix Market, after the cases
-  /// Names of solver_suite() and "auto"; empty: "auto" and, for each matrix, all that claim it.
+  /// Names of available_solvers() and "auto"; empty: "auto" and, for each matrix, all that claim
+  /// it.
   std::vector<std::string> solvers;
   std::vector<solvers::Ordering> orderings = {solvers::Ordering::kDefault};
   MeasureOptions options;

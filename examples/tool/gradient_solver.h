@@ -12,6 +12,6 @@ namespace hbar::tool {
 ///
 /// @throws InvalidInput if the scene names a solver that this build has not
 /// @throws NumericalFailure if the system cannot be solved
-[[nodiscard]] Gradient gradient_of(LoadedProblem& loaded, const Trajectory& trajectory);
+[[nodiscard]] Gradient gradient_of(const LoadedProblem& loaded, const Trajectory& trajectory);
 
 }  // namespace hbar::tool

@@ -38,8 +38,8 @@ std::string status_word(RolloutStatus status) {
 }
 
 /// Simulates, and differentiates if asked and nothing came between.
-Results run(LoadedProblem& loaded, bool with_gradient) {
-  Problem& problem = loaded.problem;
+Results run(const LoadedProblem& loaded, bool with_gradient) {
+  const Problem& problem = loaded.problem;
   const Rollout rollout = simulate(problem.horizon, problem.inputs);
   const Trajectory& trajectory = rollout.partial();
   Results out;
@@ -74,7 +74,7 @@ Results run(LoadedProblem& loaded, bool with_gradient) {
   return out;
 }
 
-ExitCode simulate(const Arguments& arguments, LoadedProblem& loaded) {
+ExitCode simulate(const Arguments& arguments, const LoadedProblem& loaded) {
   const Results results = run(loaded, arguments.command == Command::kGradient);
   if (arguments.out) {
     write_output(*arguments.out, results_json(loaded, results));
@@ -93,7 +93,7 @@ ExitCode simulate(const Arguments& arguments, LoadedProblem& loaded) {
       results.message);
 }
 
-ExitCode check(const Arguments& arguments, LoadedProblem& loaded) {
+ExitCode check(const Arguments& arguments, const LoadedProblem& loaded) {
   const GradientCheckReport report = check_gradient(loaded.problem);
   if (stop_flag()) {
     throw ToolError(ExitCode::kInterrupted, "gradient check interrupted");

@@ -14,7 +14,7 @@
 #include "examples/solver_benchmark/run_benchmark.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/text_file.h"
-#include "hbar/solvers/linear/solver_suite.h"
+#include "hbar/suite.h"
 #include "outputs.h"
 
 namespace hbar::tool {
@@ -39,7 +39,7 @@ std::vector<std::string> family_names() {
 
 std::vector<std::string> solver_names() {
   std::vector<std::string> names = {"auto"};
-  for (const solvers::SolverEntry& entry : solvers::solver_suite()) {
+  for (const solvers::SolverEntry& entry : solvers::available_solvers()) {
     names.push_back(entry.name);
   }
   return names;

@@ -6,6 +6,7 @@
 
 #include "hbar/adjoint/terms/constraint_terms.h"
 #include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/adjoint/terms/place.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/scene/build_model.h"
 #include "hbar/core/scene/read_xml.h"
@@ -101,8 +102,8 @@ Objective objective_of(const Plan& plan, Aim aim, const Horizon& horizon,
 /// the end by periodicity. In between it is above its clearance, which rises and falls as a sine.
 /// With contacts that neither begin nor end elsewhere, no iterate meets the corner of their law.
 std::vector<ConstraintPointer> contact_schedule(const Plan& plan, const Model& model) {
-  const int left = first_variable(model, "left_foot", "walker") + 2;
-  const int right = first_variable(model, "right_foot", "walker") + 2;
+  const int left = place::end_effector(model, "left_foot", kZ, 0).index;
+  const int right = place::end_effector(model, "right_foot", kZ, 0).index;
   const double radius =
       std::get<Sphere>(model.link(model.find_body("left_foot")).body.shape).radius;
   const int off = plan.take_off();

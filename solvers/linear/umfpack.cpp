@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "hbar/solvers/linear/solver_catalogue.h"
 #include "hbar/solvers/linear/suitesparse.h"
 
 namespace hbar::solvers {
@@ -170,5 +171,7 @@ std::unique_ptr<LinearSolver> make_umfpack(const SolverOptions& options) {
   }
   return std::make_unique<Umfpack<int>>(options.ordering);
 }
+
+bool register_umfpack() { return register_solver("umfpack", make_umfpack); }
 
 }  // namespace hbar::solvers

@@ -15,4 +15,9 @@ namespace hbar::solvers {
 /// @throws InvalidInput for another ordering
 [[nodiscard]] std::unique_ptr<LinearSolver> make_umfpack(const SolverOptions& options = {});
 
+/// Adds it to the solvers that are found by their names. Including "hbar/umfpack.h" calls this.
+///
+/// @returns true
+bool register_umfpack();
+
 }  // namespace hbar::solvers

@@ -79,8 +79,8 @@ def check(root, files):
 
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "hbar").mkdir()
-        for floor in lint.LIBRARY:
-            Path(folder, "hbar", floor).symlink_to(root / floor)
+        for layer in lint.LIBRARY:
+            Path(folder, "hbar", layer).symlink_to(root / layer)
         bases = {file: base_of(root, file) for file in new}
         names = {base: f"base_{i}.h" for i, base in enumerate(sorted(set(bases.values()) - {None}))}
 

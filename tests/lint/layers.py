@@ -47,9 +47,13 @@ LAYERS = {
     "adjoint/systems": (("adjoint/derivatives",), ("eigen",)),
     "adjoint/programs": (("adjoint/derivatives", "adjoint/design"), ("eigen",)),
     "adjoint/study": (("adjoint/programs", "core/files"), ("eigen", "posix")),
+    # The headers for users.
+    "solvers": (("solvers/nlp",), ()),
+    "adjoint": (("adjoint/programs", "adjoint/systems", "core/scene"), ()),
 }
-# Single files that may include more than their folder: the one place where scenes meet trajectories.
-MORE = {"adjoint/programs/load_problem": ("core/scene",)}
+# Single files that may include more than their folder: the one place where scenes meet
+# trajectories, and the header of a component.
+MORE = {"adjoint/programs/load_problem": ("core/scene",), "adjoint/study": ("adjoint/study",)}
 # Programs stand on the whole library.
 PROGRAMS = {
     "examples": ("eigen", "cli11", "json", "fmt", "posix", "suitesparse"),
@@ -84,6 +88,8 @@ def row_of(file):
 def verdict(file, bracket, path):
     """Why file may not include path, or None."""
     row, folders, libraries, is_library = row_of(file)
+    if re.match(r"hbar/[^/]+$", path):
+        return ("layer", f"{path} is for users") if is_library else None
     own = re.match(r"hbar/(.+)/[^/]+$", path)
     if own:
         return None if own.group(1) in folders else ("layer", f"{row} may not include {path}")

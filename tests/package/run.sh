@@ -26,21 +26,28 @@ for flags in "" "-march=native"; do
     -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" -DCMAKE_CXX_FLAGS="$flags"
   cmake --build "$folder"
   "$folder/stranger"
+  "$folder/alone"
 done
 
-# A component that was not built is refused by name.
+# A component that does not exist, and one that was not built, are refused by name.
 mkdir "$scratch/refused"
 cat >"$scratch/refused/CMakeLists.txt" <<'PROJECT'
 cmake_minimum_required(VERSION 3.22)
 project(refused LANGUAGES CXX)
-find_package(hbar REQUIRED COMPONENTS teleport)
+find_package(hbar REQUIRED COMPONENTS ${COMPONENT})
 PROJECT
-if cmake -G Ninja -S "$scratch/refused" -B "$scratch/refused/build" \
-     -DCMAKE_PREFIX_PATH="$scratch/prefix" >"$scratch/refused.log" 2>&1 ||
-   ! grep -q 'no component teleport' "$scratch/refused.log"; then
-  echo "package: an unknown component was not refused" >&2
-  exit 1
-fi
+refuses() {
+  if cmake -G Ninja -S "$scratch/refused" -B "$scratch/refused/build" -DCOMPONENT="$1" \
+       -DCMAKE_PREFIX_PATH="$scratch/prefix" >"$scratch/refused.log" 2>&1 ||
+     ! tr '\n' ' ' <"$scratch/refused.log" | tr -s ' ' | grep -q "$2"; then
+    echo "package: the component $1 was not refused with '$2'" >&2
+    exit 1
+  fi
+}
+refuses teleport 'no component teleport; its components are'
+rm "$scratch"/prefix/lib*/cmake/hbar/hbar_nlopt* "$scratch"/prefix/lib*/*/cmake/hbar/hbar_nlopt* \
+  2>/dev/null || true
+refuses nlopt 'built without hbar::nlopt.*libnlopt-dev'
 
 # Without CMake: as the error says, or refused with what to do.
 compile="${CXX:-c++} -std=c++20 -fsyntax-only -I$scratch/prefix/include $(pkg-config --cflags eigen3)"

@@ -12,7 +12,7 @@
 #include "hbar/core/scene/read_xml.h"
 #include "hbar/core/scene/vocabulary.h"
 #include "hbar/solvers/linear/accuracy.h"
-#include "hbar/solvers/linear/solver_suite.h"
+#include "hbar/suite.h"
 #include "tests/support/input_vector.h"
 #include "tests/support/periodic_problems.h"
 #include "tests/support/small_problems.h"
@@ -30,7 +30,7 @@ using testing::small_problem;
 /// Names of the solvers that claim a structure, and "auto".
 std::vector<std::string> solvers_for(Structure structure) {
   std::vector<std::string> names = {"auto"};
-  for (const SolverEntry& entry : solvers::solver_suite()) {
+  for (const SolverEntry& entry : solvers::available_solvers()) {
     if (entry.claims(structure)) {
       names.push_back(entry.name);
     }

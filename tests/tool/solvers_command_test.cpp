@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "hbar/solvers/linear/solver_suite.h"
+#include "hbar/suite.h"
 #include "tests/tool/running.h"
 
 namespace hbar::tool {
@@ -61,7 +61,7 @@ TEST_F(SolversCommand, EverySolverSolvesTheSystemsItIsMeantFor) {
     }
   }
   EXPECT_TRUE(seen.contains("auto"));
-  for (const solvers::SolverEntry& entry : solvers::solver_suite()) {
+  for (const solvers::SolverEntry& entry : solvers::available_solvers()) {
     EXPECT_TRUE(seen.contains(entry.name)) << entry.name;
     EXPECT_NE(outcome_.out.find("  " + entry.name), std::string::npos) << entry.name;
   }

@@ -27,7 +27,7 @@ struct Events {
   int sliding = 0;
 };
 
-Events events_of(Problem& problem) {
+Events events_of(const Problem& problem) {
   const auto history =
       contact_history(problem.horizon, simulate(problem.horizon, problem.inputs).trajectory());
   Events events;
@@ -45,7 +45,7 @@ Events events_of(Problem& problem) {
 
 /// Every class passes, and nearly every one has room for an order on its own smooth piece: the next
 /// point to touch, leave, stick or slide may be so near that differences alone fit in.
-void expect_proof(Problem& problem, const GradientCheckOptions& options) {
+void expect_proof(const Problem& problem, const GradientCheckOptions& options) {
   const GradientCheckReport report = check_gradient(problem, options);
   EXPECT_TRUE(report.passed()) << report.table();
   EXPECT_EQ(report.rows.size(), parameter_kinds().size() + 3U) << report.table();
@@ -141,7 +141,7 @@ TEST_P(ContactGradientOfEveryIntegrator, PassesFromExactRest) {
   EXPECT_TRUE(report.passed()) << report.table();
 }
 
-double value_of_inputs(Problem& problem, const Inputs& inputs) {
+double value_of_inputs(const Problem& problem, const Inputs& inputs) {
   const Trajectory trajectory = simulate(problem.horizon, inputs).trajectory();
   return problem.objective.value(read_values(problem.horizon, trajectory));
 }

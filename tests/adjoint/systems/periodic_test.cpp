@@ -98,7 +98,7 @@ TEST_P(PeriodicOfEveryIntegrator, ConvergesToTheOscillatorsAnswerWithItsOrder) {
 }
 
 /// Ψ of the orbit near given inputs.
-double orbit_value(Problem& problem, const Inputs& inputs) {
+double orbit_value(const Problem& problem, const Inputs& inputs) {
   const PeriodicOrbit orbit = solve_periodic(problem.horizon, inputs);
   return problem.objective.value(read_values(problem.horizon, orbit.trajectory));
 }
@@ -135,8 +135,8 @@ TEST_P(PeriodicOfEveryIntegrator, HasTheExactGradientByEveryClass) {
 
 /// dΨ along a direction of p and u by another route: tangents of one simulated period, and the
 /// initial state that follows from its monodromy matrix, w = Φ w + s.
-double derivative_by_monodromy(Problem& problem, const Trajectory& orbit, const Eigen::VectorXd& dp,
-                               const Eigen::VectorXd& du) {
+double derivative_by_monodromy(const Problem& problem, const Trajectory& orbit,
+                               const Eigen::VectorXd& dp, const Eigen::VectorXd& du) {
   const Horizon& horizon = problem.horizon;
   const int n = horizon.model().dof();
   Directions d = Directions::zero(horizon, 2 * n + 1);

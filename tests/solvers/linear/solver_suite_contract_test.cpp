@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "hbar/solvers/linear/accuracy.h"
-#include "hbar/solvers/linear/solver_suite.h"
+#include "hbar/suite.h"
 #include "tests/solvers/linear/structured_matrices.h"
 #include "tests/support/message_of.h"
 
@@ -23,14 +23,14 @@ const std::vector<std::vector<int>> kLayouts = {
 
 /// A solver of the catalogue with a structure that it claims: what a test goes through.
 struct Case {
-  const SolverEntry* entry;
+  SolverEntry entry;
   Structure structure;
 };
 
 std::vector<Case> every_case() {
   std::vector<Case> cases;
-  for (const SolverEntry& entry : solver_suite()) {
-    for (const Structure structure : entry.structures) cases.push_back({&entry, structure});
+  for (const SolverEntry& entry : available_solvers()) {
+    for (const Structure structure : entry.structures) cases.push_back({entry, structure});
   }
   return cases;
 }
@@ -44,7 +44,7 @@ std::vector<Case> every_case_of_blocks() {
 
 class Contract : public ::testing::TestWithParam<Case> {
  protected:
-  [[nodiscard]] static const SolverEntry& entry() { return *GetParam().entry; }
+  [[nodiscard]] static const SolverEntry& entry() { return GetParam().entry; }
   [[nodiscard]] static SparseMatrix matrix(const std::vector<int>& blocks, unsigned seed) {
     return random_of(GetParam().structure, blocks, seed);
   }
@@ -79,7 +79,7 @@ class Contract : public ::testing::TestWithParam<Case> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Suite, Contract, ::testing::ValuesIn(every_case()), [](const auto& one) {
-  return concat(one.param.entry->name, '_', name_of(one.param.structure));
+  return concat(one.param.entry.name, '_', name_of(one.param.structure));
 });
 
 void expect_solves(LinearSolver& solver, const SparseMatrix& A, double bound) {
@@ -207,7 +207,7 @@ class ContractOfBlocks : public Contract {};
 
 INSTANTIATE_TEST_SUITE_P(Suite, ContractOfBlocks, ::testing::ValuesIn(every_case_of_blocks()),
                          [](const auto& one) {
-                           return concat(one.param.entry->name, '_', name_of(one.param.structure));
+                           return concat(one.param.entry.name, '_', name_of(one.param.structure));
                          });
 
 TEST_P(ContractOfBlocks, RefusesEquationsThatRepeatEachOther) {

@@ -1,0 +1,15 @@
+#include "hbar/core/scene/load_model.h"
+
+#include <utility>
+
+#include "hbar/core/scene/build_model.h"
+#include "hbar/core/scene/read_xml.h"
+
+namespace hbar::scene {
+
+LoadedModel load_model(const std::filesystem::path& path) {
+  Scene scene = read_scene(path);
+  return {build_model(scene), std::move(scene.notices)};
+}
+
+}  // namespace hbar::scene

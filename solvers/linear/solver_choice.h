@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "hbar/solvers/linear/solver_options.h"
+
+namespace hbar::solvers {
+
+/// What was picked for a matrix, and why.
+struct SolverChoice {
+  std::string name;
+  Ordering ordering = Ordering::kDefault;
+  std::string reason;  ///< one sentence
+};
+
+/// The solver that should be fastest for a matrix, of those that the program has: by its structure,
+/// its block sizes and how many entries it has. doc/solvers.md shows the measurements behind it.
+[[nodiscard]] SolverChoice choose_solver(const SolverOptions& options, const SparseMatrix& A);
+
+/// A solver by its name, or by choose_solver if the name is "auto".
+///
+/// @param A  of the pattern that will be analysed; read by "auto" alone
+/// @throws InvalidInput as find_solver, or for an ordering, index width or structure (with its
+///         block sizes) that the solver does not offer
+[[nodiscard]] std::unique_ptr<LinearSolver> make_solver(std::string_view name,
+                                                        const SolverOptions& options,
+                                                        const SparseMatrix& A);
+
+/// make_solver with its name fixed, for those who make solvers later.
+///
+/// @throws InvalidInput as find_solver
+[[nodiscard]] SolverFactory solver_factory(std::string_view name,
+                                           Ordering ordering = Ordering::kDefault);
+
+}  // namespace hbar::solvers
