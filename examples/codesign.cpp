@@ -4,9 +4,9 @@
 
 #include "hbar/hbar.h"
 #include "hbar/ipopt.h"
-using namespace hbar;
 
 int main() {
+  using namespace hbar;
   const Model model = scene::load_model("examples/scenes/finger.xml").model;
   const std::vector<ParameterBounds> springs = {{"joint.knuckle.stiffness", 0.0, 5.0},
                                                 {"joint.middle_hinge.stiffness", 0.0, 5.0}};
