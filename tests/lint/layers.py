@@ -54,6 +54,8 @@ LAYERS = {
 # Single files that may include more than their folder: the one place where scenes meet
 # trajectories, and the header of a component.
 MORE = {"adjoint/programs/load_problem": ("core/scene",), "adjoint/study": ("adjoint/study",)}
+# Has the same table for people.
+PAGE = "doc/architecture.md"
 # Programs stand on the whole library.
 PROGRAMS = {
     "examples": ("eigen", "cli11", "json", "fmt", "posix", "suitesparse"),
@@ -146,7 +148,24 @@ def cycles(root, files):
                 yield lint.Finding(file, number, "cycle", f"{other} includes {stem}, too")
 
 
+def documented(root, page):
+    """Rows of the page's table of folders that differ from LAYERS, and rows that are missing there."""
+    tabled = {}
+    for number, line in enumerate(lint.read(root, page).splitlines(), 1):
+        cells = [cell.strip() for cell in line.split("|")[1:-1]]
+        if len(cells) == 4 and re.fullmatch(r"`[\w/]+`", cells[0]):
+            tabled[cells[0].strip("`")] = number, tuple(re.findall(r"`([\w/]+)`", cells[2]))
+    for folder, (number, names) in tabled.items():
+        if names != LAYERS.get(folder, (None,))[0]:
+            yield lint.Finding(page, number, "page", f"{folder} differs from tests/lint/layers.py")
+    for folder, (_, libraries) in LAYERS.items():
+        if libraries and folder not in tabled:
+            yield lint.Finding(page, 1, "page", f"{folder} has no row")
+
+
 def check(root, files):
+    if PAGE in files:
+        yield from documented(root, PAGE)
     for file in lint.cpp(files, (*lint.LIBRARY, *PROGRAMS)):
         for number, bracket, path in includes(root, file):
             reason = verdict(file, bracket, path)
