@@ -69,7 +69,9 @@ class CsvReader {
   void quoted(CsvCell& cell) {
     for (++at_; at_ < text_.size(); ++at_) {
       if (text_[at_] == '"') {
-        if (text_.substr(at_ + 1, 1) != "\"") break;
+        if (text_.substr(at_ + 1, 1) != "\"") {
+          break;
+        }
         ++at_;
       }
       if (text_[at_] == '\n') {
@@ -78,7 +80,9 @@ class CsvReader {
       }
       cell.text += text_[at_];
     }
-    if (at_ == text_.size()) fail_at(cell, file_, "a quote is opened here and not closed");
+    if (at_ == text_.size()) {
+      fail_at(cell, file_, "a quote is opened here and not closed");
+    }
     ++at_;
     if (at_ < line_end() && text_[at_] != ',') {
       fail_at(cell, file_, "text after a closing quote; a quote within a cell is written twice");
@@ -101,11 +105,15 @@ std::vector<CsvRow> parse_csv(std::string_view text, const std::string& file) {
 std::string csv_cell(std::string_view text) {
   const bool plain = text.find_first_of(",\"\r\n") == std::string_view::npos &&
                      without_blanks(text).size() == text.size() && text.substr(0, 1) != "#";
-  if (plain) return std::string(text);
+  if (plain) {
+    return std::string(text);
+  }
   std::string out = "\"";
   for (const char c : text) {
     out += c;
-    if (c == '"') out += c;
+    if (c == '"') {
+      out += c;
+    }
   }
   return out + '"';
 }
@@ -113,14 +121,18 @@ std::string csv_cell(std::string_view text) {
 double number_in(const CsvCell& cell, const std::string& file) {
   std::string reason;
   const std::optional<double> number = scene::parse_number(cell.text, reason);
-  if (!number) fail_at(cell, file, reason);
+  if (!number) {
+    fail_at(cell, file, reason);
+  }
   return *number;
 }
 
 int integer_in(const CsvCell& cell, const std::string& file) {
   std::string reason;
   const std::optional<int> number = scene::parse_integer(cell.text, reason);
-  if (!number) fail_at(cell, file, reason);
+  if (!number) {
+    fail_at(cell, file, reason);
+  }
   return *number;
 }
 

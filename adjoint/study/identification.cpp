@@ -17,7 +17,9 @@ void check_data(const TrajectoryData& data, const char* where) {
     throw InvalidInput(
         concat(where, ": ", data.data.size(), " data for ", data.places.size(), " places"));
   }
-  if (!data.data.allFinite()) throw InvalidInput(concat(where, ": a datum is not finite"));
+  if (!data.data.allFinite()) {
+    throw InvalidInput(concat(where, ": a datum is not finite"));
+  }
 }
 
 Eigen::VectorXd sigma_of_each(const Eigen::VectorXd& sigma, const TrajectoryData& data,
@@ -37,9 +39,13 @@ class MeasuredDataTerm final : public ObjectiveTerm {
   MeasuredDataTerm(const TrajectoryData& data, const Eigen::VectorXd& sigma, double weight)
       : places_(data.places), data_(data.data) {
     check_data(data, "measured_data_term");
-    if (!std::isfinite(weight)) throw InvalidInput("measured_data_term: the weight is not finite");
+    if (!std::isfinite(weight)) {
+      throw InvalidInput("measured_data_term: the weight is not finite");
+    }
     weights_ = weight * sigma_of_each(sigma, data, "measured_data_term").cwiseAbs2().cwiseInverse();
-    for (std::size_t i = 0; i < places_.size(); ++i) add_second(places_[i], weights_[at(i)]);
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      add_second(places_[i], weights_[at(i)]);
+    }
   }
 
   [[nodiscard]] std::string name() const override { return "measured data"; }
@@ -176,8 +182,12 @@ Information fisher_information(const Horizon& horizon, const Trajectory& traject
   fit.scale.head(d.size()) = variables.scale;
   if (options.initial_state) {
     const TrajectoryNames names = trajectory_names(horizon);
-    for (const std::string& name : names.q) fit.names.push_back("initial " + name);
-    for (const std::string& name : names.qdot) fit.names.push_back("initial " + name);
+    for (const std::string& name : names.q) {
+      fit.names.push_back("initial " + name);
+    }
+    for (const std::string& name : names.qdot) {
+      fit.names.push_back("initial " + name);
+    }
     const Eigen::Index dof = horizon.model().dof();
     fit.estimate.segment(d.size(), dof) = trajectory.inputs.q0;
     fit.estimate.tail(dof) = trajectory.inputs.qdot0;

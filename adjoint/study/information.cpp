@@ -15,7 +15,9 @@ void check_vector(const Eigen::VectorXd& v, Eigen::Index size, const char* what)
   if (v.size() != size) {
     throw InvalidInput(concat("information: ", what, " has ", v.size(), " entries, not ", size));
   }
-  if (!v.allFinite()) throw InvalidInput(concat("information: ", what, " is not finite"));
+  if (!v.allFinite()) {
+    throw InvalidInput(concat("information: ", what, " is not finite"));
+  }
 }
 
 void check_fit(const Fit& fit) {
@@ -30,9 +32,15 @@ void check_fit(const Fit& fit) {
     throw InvalidInput(concat("information: sensitivity is ", fit.sensitivity.rows(), " x ",
                               fit.sensitivity.cols(), ", not ", data, " x ", k, " finite numbers"));
   }
-  if (k == 0) throw InvalidInput("information: there are no parameters");
-  if ((fit.scale.array() <= 0.0).any()) throw InvalidInput("information: a scale is not positive");
-  if ((fit.sigma.array() <= 0.0).any()) throw InvalidInput("information: a sigma is not positive");
+  if (k == 0) {
+    throw InvalidInput("information: there are no parameters");
+  }
+  if ((fit.scale.array() <= 0.0).any()) {
+    throw InvalidInput("information: a scale is not positive");
+  }
+  if ((fit.sigma.array() <= 0.0).any()) {
+    throw InvalidInput("information: a sigma is not positive");
+  }
 }
 
 /// A direction as a sum of names, without its negligible parts: "0.8 mass - 0.6 stiffness".
@@ -45,11 +53,14 @@ std::string direction_words(const Eigen::VectorXd& direction,
   std::string words;
   for (Eigen::Index i = 0; i < direction.size(); ++i) {
     const double part = sign * direction[i];
-    if (std::abs(part) < kNegligible * size) continue;
-    if (!words.empty())
+    if (std::abs(part) < kNegligible * size) {
+      continue;
+    }
+    if (!words.empty()) {
       words += part < 0.0 ? " - " : " + ";
-    else if (part < 0.0)
+    } else if (part < 0.0) {
       words += "-";
+    }
     if (std::abs(part) < 0.995) {
       words += scene::format_number(std::round(100.0 * std::abs(part)) / 100.0) + ' ';
     }
@@ -90,7 +101,9 @@ double normal_quantile(double level) {
     const double missing = std::erfc(z / std::numbers::sqrt2) - (1.0 - level);
     const double step = missing / (kSlopeAtZero * std::exp(-0.5 * z * z));
     z += step;
-    if (std::abs(step) <= 1e-15 * z) break;
+    if (std::abs(step) <= 1e-15 * z) {
+      break;
+    }
   }
   return z;
 }
@@ -129,7 +142,9 @@ Information information(const Fit& fit, const InformationOptions& options) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(even, Eigen::ComputeThinV);
   const Eigen::VectorXd& answers = svd.singularValues();
   Eigen::Index known = 0;
-  while (known < k && answers[known] > options.least_answer * std::max(answers[0], 1e-300)) ++known;
+  while (known < k && answers[known] > options.least_answer * std::max(answers[0], 1e-300)) {
+    ++known;
+  }
   if (known < k) {
     out.silent = unit.cwiseQuotient(fit.scale).asDiagonal() * svd.matrixV().rightCols(k - known);
     out.silent.colwise().normalize();

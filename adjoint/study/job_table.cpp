@@ -18,7 +18,9 @@ std::string study_line(const JobOptions& options) {
 
 std::string heading_line(const JobOptions& options) {
   std::string text = "job,outcome,objective";
-  for (const std::string& column : options.columns) text += ',' + csv_cell(column);
+  for (const std::string& column : options.columns) {
+    text += ',' + csv_cell(column);
+  }
   return text + ",status,message";
 }
 
@@ -30,10 +32,14 @@ std::string outcome_word(const JobResult& result) {
 
 std::string job_line(int index, const JobResult& result, std::size_t columns) {
   std::string text = concat(index, ',', outcome_word(result), ',');
-  if (!result.failed) text += scene::format_number(result.objective);
+  if (!result.failed) {
+    text += scene::format_number(result.objective);
+  }
   for (std::size_t i = 0; i < columns; ++i) {
     text += ',';
-    if (!result.failed) text += scene::format_number(result.numbers[i]);
+    if (!result.failed) {
+      text += scene::format_number(result.numbers[i]);
+    }
   }
   return text + ',' + csv_cell(result.status) + ',' + csv_cell(result.message);
 }
@@ -42,7 +48,9 @@ std::string job_table(const JobOptions& options,
                       const std::vector<std::optional<JobResult>>& results) {
   std::string text = study_line(options) + '\n' + heading_line(options) + '\n';
   for (std::size_t i = 0; i < results.size(); ++i) {
-    if (!results[i]) continue;
+    if (!results[i]) {
+      continue;
+    }
     text += job_line(static_cast<int>(i), *results[i], options.columns.size()) + '\n';
   }
   return text;

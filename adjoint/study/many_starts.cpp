@@ -38,14 +38,20 @@ JobResult failed_job(std::string message) {
 
 /// A job's result, or why it cannot stand in the table.
 JobResult checked_result(JobResult result, const std::vector<std::string>& columns) {
-  if (result.failed) return result;
+  if (result.failed) {
+    return result;
+  }
   if (result.numbers.size() != columns.size()) {
     return failed_job(concat("the job returned ", result.numbers.size(), " numbers for ",
                              columns.size(), " columns"));
   }
-  if (!std::isfinite(result.objective)) return failed_job("the objective is not finite");
+  if (!std::isfinite(result.objective)) {
+    return failed_job("the objective is not finite");
+  }
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (!std::isfinite(result.numbers[i])) return failed_job(columns[i] + " is not finite");
+    if (!std::isfinite(result.numbers[i])) {
+      return failed_job(columns[i] + " is not finite");
+    }
   }
   return result;
 }
@@ -66,15 +72,21 @@ JobResult result_of(const Job& job, int index, const JobOptions& options) {
                        [[maybe_unused]] pid_t parent) {
 #ifdef __linux__
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(1);
+  if (::getppid() != parent) {
+    ::_exit(1);
+  }
 #endif
   const std::string line =
       job_line(index, result_of(job, index, options), options.columns.size()) + '\n';
   std::string_view left = line;
   while (!left.empty()) {
     const ssize_t count = ::write(pipe, left.data(), left.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) ::_exit(1);
+    if (count < 0 && errno == EINTR) {
+      continue;
+    }
+    if (count < 0) {
+      ::_exit(1);
+    }
     left.remove_prefix(static_cast<std::size_t>(count));
   }
   ::_exit(0);
@@ -86,7 +98,9 @@ class Worker {
   Worker(const Job& job, int index, const JobOptions& options)
       : index_(index), options_(options), start_(Clock::now()) {
     std::array<int, 2> ends{};
-    if (::pipe(ends.data()) != 0) fail_to_start();
+    if (::pipe(ends.data()) != 0) {
+      fail_to_start();
+    }
     const pid_t parent = ::getpid();
     process_ = ::fork();
     if (process_ == 0) {
@@ -120,7 +134,9 @@ class Worker {
   bool listen() {
     std::array<char, 4096> block{};
     const ssize_t count = ::read(pipe_, block.data(), block.size());
-    if (count > 0) text_.append(block.data(), static_cast<std::size_t>(count));
+    if (count > 0) {
+      text_.append(block.data(), static_cast<std::size_t>(count));
+    }
     return count == 0 || (count < 0 && errno != EINTR);
   }
   /// Its result, after it closed its end.
@@ -171,7 +187,9 @@ class Crew {
   void attend() {
     constexpr int kMoment = 20;  // ms: how late a limit or the stop flag is noticed
     std::vector<pollfd> polled;
-    for (const Worker& worker : workers_) polled.push_back(worker.polled());
+    for (const Worker& worker : workers_) {
+      polled.push_back(worker.polled());
+    }
     ::poll(polled.data(), static_cast<nfds_t>(polled.size()), kMoment);
     std::size_t i = 0;
     for (auto worker = workers_.begin(); worker != workers_.end(); ++i) {
@@ -196,7 +214,9 @@ class Crew {
     if (!options_.table.empty()) {
       scene::write_file_atomically(options_.table, job_table(options_, report_.results));
     }
-    if (options_.on_job) options_.on_job(index, *slot);
+    if (options_.on_job) {
+      options_.on_job(index, *slot);
+    }
   }
 
   const JobOptions& options_;
@@ -226,11 +246,15 @@ void check_job_options(const JobOptions& options) {
 JobReport earlier_jobs(const JobOptions& options) {
   JobReport report;
   report.results.resize(static_cast<std::size_t>(options.count));
-  if (options.table.empty() || !std::filesystem::exists(options.table)) return report;
+  if (options.table.empty() || !std::filesystem::exists(options.table)) {
+    return report;
+  }
   report.results =
       read_job_table(scene::read_text_file(options.table), options, options.table.string());
   for (std::optional<JobResult>& result : report.results) {
-    if (result && result->failed && options.retry_failed) result.reset();
+    if (result && result->failed && options.retry_failed) {
+      result.reset();
+    }
     report.kept += result.has_value() ? 1 : 0;
   }
   return report;
@@ -246,7 +270,9 @@ bool JobReport::complete() const {
 std::optional<int> JobReport::best() const {
   std::optional<int> best;
   for (std::size_t i = 0; i < results.size(); ++i) {
-    if (!results[i] || results[i]->failed || !results[i]->converged) continue;
+    if (!results[i] || results[i]->failed || !results[i]->converged) {
+      continue;
+    }
     if (!best || results[i]->objective < results[static_cast<std::size_t>(*best)]->objective) {
       best = static_cast<int>(i);
     }
@@ -265,7 +291,9 @@ JobReport run_jobs(const JobOptions& options, const Job& job) {
   JobReport report = earlier_jobs(options);
   std::vector<int> waiting;
   for (int i = 0; i < options.count; ++i) {
-    if (!report.results[static_cast<std::size_t>(i)]) waiting.push_back(i);
+    if (!report.results[static_cast<std::size_t>(i)]) {
+      waiting.push_back(i);
+    }
   }
   waiting.resize(std::min(waiting.size(), static_cast<std::size_t>(std::max(0, options.most))));
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -274,8 +302,12 @@ JobReport run_jobs(const JobOptions& options, const Job& job) {
   Crew crew(options, job, report);
   auto next = waiting.begin();
   while (next != waiting.end() || crew.size() > 0) {
-    if (options.stop != nullptr && *options.stop) break;
-    while (next != waiting.end() && crew.size() < workers) crew.start(*next++);
+    if (options.stop != nullptr && *options.stop) {
+      break;
+    }
+    while (next != waiting.end() && crew.size() < workers) {
+      crew.start(*next++);
+    }
     crew.attend();
   }
   return report;

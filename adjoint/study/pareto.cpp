@@ -42,7 +42,9 @@ bool comes_before(const ParetoPoint& a, const ParetoPoint& b) {
 /// Fronts have tens of points: every pair is compared.
 void mark_dominated(std::vector<ParetoPoint>& points) {
   for (ParetoPoint& point : points) {
-    if (!point.optimum.converged) continue;
+    if (!point.optimum.converged) {
+      continue;
+    }
     point.dominated = std::any_of(points.begin(), points.end(), [&](const ParetoPoint& other) {
       return other.optimum.converged && dominates(other.optimum, point.optimum);
     });
@@ -52,15 +54,21 @@ void mark_dominated(std::vector<ParetoPoint>& points) {
 }  // namespace
 
 std::vector<double> equal_weights(int n) {
-  if (n < 2) throw InvalidInput(concat("equal_weights: ", n, " weights; at least 2 are needed"));
+  if (n < 2) {
+    throw InvalidInput(concat("equal_weights: ", n, " weights; at least 2 are needed"));
+  }
   std::vector<double> weights;
-  for (int i = 0; i < n; ++i) weights.push_back(static_cast<double>(i) / (n - 1));
+  for (int i = 0; i < n; ++i) {
+    weights.push_back(static_cast<double>(i) / (n - 1));
+  }
   return weights;
 }
 
 std::vector<ParetoPoint> pareto_sweep(const std::vector<double>& weights,
                                       const WeightedSolve& solve) {
-  if (weights.empty()) throw InvalidInput("pareto_sweep: there are no weights");
+  if (weights.empty()) {
+    throw InvalidInput("pareto_sweep: there are no weights");
+  }
   for (const double weight : weights) {
     if (!(weight >= 0.0 && weight <= 1.0)) {
       throw InvalidInput(concat("pareto_sweep: weight ", weight, " is outside [0, 1]"));

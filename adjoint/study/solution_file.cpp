@@ -89,7 +89,9 @@ SolutionText read_solution_text(const std::filesystem::path& path) {
             concat("version ", rows[0][1].text, " of the format; known is ", kVersion));
   }
   SolutionText out;
-  for (std::size_t i = 1; i < rows.size(); ++i) read_solution_row(rows[i], file, out);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    read_solution_row(rows[i], file, out);
+  }
   out.end = rows.back().back();
   return out;
 }
@@ -98,7 +100,9 @@ SolutionText read_solution_text(const std::filesystem::path& path) {
 void compare_names(const std::vector<CsvCell>& found, const std::vector<std::string>& expected,
                    const char* what, const CsvCell& end, const std::string& file) {
   for (std::size_t i = 0; i < std::min(found.size(), expected.size()); ++i) {
-    if (found[i].text == expected[i]) continue;
+    if (found[i].text == expected[i]) {
+      continue;
+    }
     fail_at(found[i], file,
             concat("another program's solution: ", what, ' ', i, " is \"",
                    scene::quotable(found[i].text), "\", not \"", expected[i], '"'));
@@ -174,16 +178,22 @@ solvers::IpoptResult solve_and_save(solvers::Nlp& nlp, const solvers::IpoptOptio
   const auto n = static_cast<Eigen::Index>(solution.variable_names.size());
   const bool reached =
       result.x.size() == n && result.x.allFinite() && std::isfinite(result.objective);
-  if (!reached) return result;
+  if (!reached) {
+    return result;
+  }
   solvers::PrimalDualPoint& point = solution.point;
   const auto m = static_cast<Eigen::Index>(solution.constraint_names.size());
   const auto mend = [](Eigen::VectorXd& multipliers, Eigen::Index size) {
-    if (multipliers.size() != size || !multipliers.allFinite()) multipliers.setZero(size);
+    if (multipliers.size() != size || !multipliers.allFinite()) {
+      multipliers.setZero(size);
+    }
   };
   mend(point.lower_multipliers, n);
   mend(point.upper_multipliers, n);
   mend(point.constraint_multipliers, m);
-  if (!std::isfinite(point.mu)) point.mu = 0.0;
+  if (!std::isfinite(point.mu)) {
+    point.mu = 0.0;
+  }
   save_solution(path, solution);
   return result;
 }

@@ -134,7 +134,9 @@ std::string trajectory_csv(const TrajectoryNames& names, const TrajectoryValues&
     if (rows != static_cast<Eigen::Index>(list.size())) {
       throw InvalidInput(concat("trajectory_csv: ", rows, " rows for ", list.size(), " names"));
     }
-    for (const std::string& name : list) text += ',' + csv_cell(name);
+    for (const std::string& name : list) {
+      text += ',' + csv_cell(name);
+    }
   }
   for (Eigen::Index k = 0; k < values.q.cols(); ++k) {
     text += '\n' + scene::format_number(static_cast<double>(k) * values.h);
@@ -143,7 +145,9 @@ std::string trajectory_csv(const TrajectoryNames& names, const TrajectoryValues&
       const Eigen::Index column = named.field == ValueField::kU ? k - 1 : k;
       for (Eigen::Index i = 0; i < numbers.rows(); ++i) {
         text += ',';
-        if (column >= 0) text += scene::format_number(numbers(i, column));
+        if (column >= 0) {
+          text += scene::format_number(numbers(i, column));
+        }
       }
     }
   }
@@ -168,11 +172,15 @@ TrajectoryData read_trajectory_csv(std::string_view text, const std::string& fil
     throw InvalidInput(concat("read_trajectory_csv: the step is ", grid.h, ", but must be > 0"));
   }
   const std::vector<CsvRow> rows = parse_csv(text, file);
-  if (rows.empty()) throw InvalidInput(file + ":1: an empty table; it begins with a heading");
+  if (rows.empty()) {
+    throw InvalidInput(file + ":1: an empty table; it begins with a heading");
+  }
   const std::vector<ValuePlace> columns = read_heading(rows[0], file, names);
 
   TrajectoryData out;
-  for (std::size_t i = 1; i < rows[0].size(); ++i) out.names.push_back(rows[0][i].text);
+  for (std::size_t i = 1; i < rows[0].size(); ++i) {
+    out.names.push_back(rows[0][i].text);
+  }
   std::vector<double> data;
   int last = -1;
   for (std::size_t r = 1; r < rows.size(); ++r) {
@@ -183,10 +191,14 @@ TrajectoryData read_trajectory_csv(std::string_view text, const std::string& fil
     }
     last = read_step(row[0], file, grid, last);
     for (std::size_t i = 1; i < row.size(); ++i) {
-      if (row[i].text.empty()) continue;
+      if (row[i].text.empty()) {
+        continue;
+      }
       ValuePlace place = columns[i - 1];
       place.step = place.field == ValueField::kU ? last - 1 : last;
-      if (place.step < 0) fail_at(row[i], file, "a control at time 0, before the first step");
+      if (place.step < 0) {
+        fail_at(row[i], file, "a control at time 0, before the first step");
+      }
       data.push_back(number_in(row[i], file));
       out.places.push_back(place);
       out.column.push_back(i - 1);

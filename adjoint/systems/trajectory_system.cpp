@@ -22,10 +22,14 @@ void check(const SystemOptions& options) {
     throw InvalidInput(concat("system: ", name, " is ", value, "; it must be ", allowed));
   };
   const auto non_negative = [&](std::string_view name, double value) {
-    if (!(value >= 0.0) || !std::isfinite(value)) refuse(name, value, "0 or more, and finite");
+    if (!(value >= 0.0) || !std::isfinite(value)) {
+      refuse(name, value, "0 or more, and finite");
+    }
   };
   const auto positive = [&](std::string_view name, double value) {
-    if (!(value > 0.0) || !std::isfinite(value)) refuse(name, value, "positive and finite");
+    if (!(value > 0.0) || !std::isfinite(value)) {
+      refuse(name, value, "positive and finite");
+    }
   };
   non_negative("tracking", options.tracking);
   non_negative("forces", options.forces);

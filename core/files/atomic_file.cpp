@@ -22,8 +22,12 @@ class OpenFile {
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
   ~OpenFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    if (descriptor_ >= 0) {
+      ::close(descriptor_);
+    }
+    if (!temporary_.empty()) {
+      ::unlink(temporary_.c_str());
+    }
   }
   [[nodiscard]] int descriptor() const { return descriptor_; }
   [[nodiscard]] const std::string& temporary() const { return temporary_; }
@@ -49,18 +53,26 @@ class OpenFile {
 void write_all(int descriptor, std::string_view text, const std::filesystem::path& path) {
   while (!text.empty()) {
     const ssize_t count = ::write(descriptor, text.data(), text.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(path, "written", errno);
+    if (count < 0 && errno == EINTR) {
+      continue;
+    }
+    if (count < 0) {
+      fail(path, "written", errno);
+    }
     text.remove_prefix(static_cast<std::size_t>(count));
   }
 }
 
 void write_directly(const std::filesystem::path& path, std::string_view text) {
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-  if (descriptor < 0) fail(path, "opened", errno);
+  if (descriptor < 0) {
+    fail(path, "opened", errno);
+  }
   OpenFile file(descriptor, "");
   write_all(descriptor, text, path);
-  if (const int code = file.close()) fail(path, "written", code);
+  if (const int code = file.close()) {
+    fail(path, "written", code);
+  }
 }
 
 /// The permissions a new file would get.
@@ -73,26 +85,42 @@ mode_t new_file_mode() {
 }  // namespace
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view text) {
-  if (path.empty()) fail("(no name)", "written", ENOENT);
+  if (path.empty()) {
+    fail("(no name)", "written", ENOENT);
+  }
   struct stat status = {};
   const bool exists = ::stat(path.c_str(), &status) == 0;
-  if (exists && S_ISDIR(status.st_mode)) fail(path, "written", EISDIR);
-  if (exists && !S_ISREG(status.st_mode)) return write_directly(path, text);
+  if (exists && S_ISDIR(status.st_mode)) {
+    fail(path, "written", EISDIR);
+  }
+  if (exists && !S_ISREG(status.st_mode)) {
+    return write_directly(path, text);
+  }
 
   std::error_code ignored;
   const std::filesystem::path target = exists ? std::filesystem::canonical(path, ignored) : path;
   const std::filesystem::path& real = target.empty() ? path : target;
   std::string temporary = real.string() + ".XXXXXX";
   const int descriptor = ::mkstemp(temporary.data());
-  if (descriptor < 0) fail(path, "written", errno);
+  if (descriptor < 0) {
+    fail(path, "written", errno);
+  }
   OpenFile file(descriptor, temporary);
 
   write_all(descriptor, text, path);
   const mode_t mode = exists ? (status.st_mode & 07777) : new_file_mode();
-  if (::fchmod(descriptor, mode) != 0) fail(path, "written", errno);
-  if (::fsync(descriptor) != 0) fail(path, "written", errno);
-  if (const int code = file.close()) fail(path, "written", code);
-  if (::rename(temporary.c_str(), real.c_str()) != 0) fail(path, "written", errno);
+  if (::fchmod(descriptor, mode) != 0) {
+    fail(path, "written", errno);
+  }
+  if (::fsync(descriptor) != 0) {
+    fail(path, "written", errno);
+  }
+  if (const int code = file.close()) {
+    fail(path, "written", code);
+  }
+  if (::rename(temporary.c_str(), real.c_str()) != 0) {
+    fail(path, "written", errno);
+  }
   file.keep();
 
   const std::filesystem::path folder = real.has_parent_path() ? real.parent_path() : ".";

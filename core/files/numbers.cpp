@@ -44,10 +44,16 @@ std::vector<std::string_view> split_words(std::string_view text) {
   std::vector<std::string_view> words;
   std::size_t i = 0;
   while (i < text.size()) {
-    while (i < text.size() && is_blank(text[i])) ++i;
+    while (i < text.size() && is_blank(text[i])) {
+      ++i;
+    }
     const std::size_t begin = i;
-    while (i < text.size() && !is_blank(text[i])) ++i;
-    if (i > begin) words.push_back(text.substr(begin, i - begin));
+    while (i < text.size() && !is_blank(text[i])) {
+      ++i;
+    }
+    if (i > begin) {
+      words.push_back(text.substr(begin, i - begin));
+    }
   }
   return words;
 }
@@ -78,7 +84,9 @@ std::string quotable(std::string_view text) {
       out += {'\\', 'x', kDigits[byte / 16U], kDigits[byte % 16U]};
     }
   }
-  if (text.size() > kLongest) out += "...";
+  if (text.size() > kLongest) {
+    out += "...";
+  }
   return out;
 }
 

@@ -16,7 +16,9 @@ std::string read_text_file(const std::filesystem::path& path) {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   const std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "rb"));
-  if (!file) throw IoError(concat(path.string(), ": cannot be opened: ", reason(errno)));
+  if (!file) {
+    throw IoError(concat(path.string(), ": cannot be opened: ", reason(errno)));
+  }
   std::string text;
   std::array<char, 1 << 16> buffer;
   std::size_t count = 0;

@@ -51,7 +51,9 @@ template <typename Visit>
 void for_each(const Eigen::Vector3i& count, const Visit& visit) {
   for (int k = 0; k < count.z(); ++k) {
     for (int j = 0; j < count.y(); ++j) {
-      for (int i = 0; i < count.x(); ++i) visit(i, j, k);
+      for (int i = 0; i < count.x(); ++i) {
+        visit(i, j, k);
+      }
     }
   }
 }
@@ -64,9 +66,13 @@ double measure_error(const TriangleDistance& exact, const TricubicSpline& spline
   for_each(nodes.count.array() - 1, [&](int i, int j, int k) {
     const Eigen::Vector3d x = nodes.point(i, j, k).array() + 0.5 * nodes.spacing;
     const double value = spline.value(x);
-    if (std::abs(value) > near + nodes.spacing) return;  // surely not near: spares a search
+    if (std::abs(value) > near + nodes.spacing) {
+      return;  // surely not near: spares a search
+    }
     const double distance = exact.signed_distance(x, hint);
-    if (std::abs(distance) <= near) largest = std::max(largest, std::abs(value - distance));
+    if (std::abs(distance) <= near) {
+      largest = std::max(largest, std::abs(value - distance));
+    }
   });
   return largest;
 }
@@ -78,7 +84,9 @@ std::array<double, 4> growth(double x, double low, double high, double cell) {
   const double sign = x < low ? -1.0 : 1.0;
   const double width = 2.0 * cell;
   const double s = (x < low ? low - x : (x > high ? x - high : 0.0)) / width;
-  if (s >= 1.0) return {width * (s - 0.5), sign, 0.0, 0.0};
+  if (s >= 1.0) {
+    return {width * (s - 0.5), sign, 0.0, 0.0};
+  }
   return {width * s * s * s * (1.0 - s / 2.0), sign * s * s * (3.0 - 2.0 * s),
           6.0 * s * (1.0 - s) / width, s > 0.0 ? sign * (6.0 - 12.0 * s) / (width * width) : 0.0};
 }
@@ -90,7 +98,9 @@ void append(std::string& bytes, Number number) {
 }
 
 void append(std::string& bytes, const Eigen::Vector3d& vector) {
-  for (const double number : vector) append(bytes, number);
+  for (const double number : vector) {
+    append(bytes, number);
+  }
 }
 
 std::uint64_t checksum_of(std::string_view bytes) {
@@ -107,14 +117,18 @@ class Reader {
   template <typename Number>
   Number number() {
     std::array<char, sizeof(Number)> part = {};
-    if (bytes_.size() < part.size()) throw InvalidInput("distance grid: the data is cut short");
+    if (bytes_.size() < part.size()) {
+      throw InvalidInput("distance grid: the data is cut short");
+    }
     std::copy_n(bytes_.begin(), part.size(), part.begin());
     bytes_.remove_prefix(part.size());
     return std::bit_cast<Number>(part);
   }
   Eigen::Vector3d vector() {
     Eigen::Vector3d result;
-    for (double& entry : result) entry = number<double>();
+    for (double& entry : result) {
+      entry = number<double>();
+    }
     return result;
   }
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
@@ -148,14 +162,18 @@ DistanceGrid::State DistanceGrid::build(const TriangleMesh& mesh, int cells) {
 }
 
 double DistanceGrid::lower_bound(const Eigen::Vector3d& x) const {
-  if (domain_.squaredExteriorDistance(x) > 0.0) return state_.box.exteriorDistance(x);
+  if (domain_.squaredExteriorDistance(x) > 0.0) {
+    return state_.box.exteriorDistance(x);
+  }
   return state_.spline.value(x);
 }
 
 DistanceField::Sample DistanceGrid::sample(const Eigen::Vector3d& x) const {
   const TricubicSpline::Jet jet = state_.spline.jet(x);
   Sample sample = {jet.value, jet.gradient, jet.hessian};
-  if (domain_.contains(x)) return sample;
+  if (domain_.contains(x)) {
+    return sample;
+  }
   for (int axis = 0; axis < 3; ++axis) {
     const auto added = growth(x[axis], domain_.min()[axis], domain_.max()[axis], nodes().spacing);
     sample.distance += added[0];
@@ -180,13 +198,17 @@ std::string DistanceGrid::bytes() const {
   std::string bytes(kMagic);
   bytes.reserve(256 + sizeof(double) * coefficients.size());
   append(bytes, kVersion);
-  for (const int count : nodes().count) append(bytes, static_cast<std::int64_t>(count));
+  for (const int count : nodes().count) {
+    append(bytes, static_cast<std::int64_t>(count));
+  }
   append(bytes, nodes().origin);
   append(bytes, nodes().spacing);
   append(bytes, state_.box.min());
   append(bytes, state_.box.max());
   append(bytes, state_.max_error);
-  for (const double number : coefficients) append(bytes, number);
+  for (const double number : coefficients) {
+    append(bytes, number);
+  }
   append(bytes, checksum_of(bytes));
   return bytes;
 }
@@ -220,7 +242,9 @@ DistanceGrid::State DistanceGrid::read(std::string_view bytes) {
     throw InvalidInput(concat("distance grid: ", reader.left(), " bytes where the coefficients of ",
                               nodes.count.transpose(), " nodes take ", expected));
   }
-  for (double& number : coefficients) number = reader.number<double>();
+  for (double& number : coefficients) {
+    number = reader.number<double>();
+  }
   if (reader.number<std::uint64_t>() !=
       checksum_of(bytes.substr(0, bytes.size() - sizeof(std::uint64_t)))) {
     throw InvalidInput("distance grid: the data does not agree with its checksum");

@@ -51,7 +51,9 @@ EdgeTable count_edges(const TriangleMesh& mesh) {
 }
 
 void check_entries(const TriangleMesh& mesh) {
-  if (mesh.triangles.empty()) throw InvalidInput("mesh: no triangle; a solid needs at least 4");
+  if (mesh.triangles.empty()) {
+    throw InvalidInput("mesh: no triangle; a solid needs at least 4");
+  }
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     if (!mesh.vertices[i].allFinite()) {
       throw InvalidInput(concat("mesh: vertex ", i + 1, " is ", text_of(mesh.vertices[i]),
@@ -89,7 +91,9 @@ void check_edges(const TriangleMesh& mesh) {
       const auto low = static_cast<std::size_t>(std::min(triangle[i], triangle[(i + 1) % 3]));
       const auto high = static_cast<std::size_t>(std::max(triangle[i], triangle[(i + 1) % 3]));
       const EdgeUse& use = edges.at(low * mesh.vertices.size() + high);
-      if (use.forward == 1 && use.backward == 1) continue;
+      if (use.forward == 1 && use.backward == 1) {
+        continue;
+      }
       const int total = use.forward + use.backward;
       const std::string edge = concat("mesh: the edge from ", text_of(vertex(mesh, use.from)),
                                       " to ", text_of(vertex(mesh, use.to)));
@@ -139,7 +143,9 @@ TetrahedronSums sum_tetrahedra(const TriangleMesh& mesh) {
 
 bool is_closed(const TriangleMesh& mesh) {
   for (const auto& [key, use] : count_edges(mesh)) {
-    if (use.forward + use.backward != 2) return false;
+    if (use.forward + use.backward != 2) {
+      return false;
+    }
   }
   return !mesh.triangles.empty();
 }
@@ -165,7 +171,9 @@ TriangleMesh merge_equal_vertices(const TriangleMesh& mesh) {
   std::vector<int> new_index;
   for (const Eigen::Vector3d& point : mesh.vertices) {
     const auto [place, is_new] = known.emplace(point, static_cast<int>(merged.vertices.size()));
-    if (is_new) merged.vertices.push_back(point);
+    if (is_new) {
+      merged.vertices.push_back(point);
+    }
     new_index.push_back(place->second);
   }
   for (const std::array<int, 3>& triangle : mesh.triangles) {

@@ -34,14 +34,17 @@ Points sample(const NoShape&, const SurfaceResolution&) { return {}; }
 
 Points sample(const Cuboid& cuboid, const SurfaceResolution& resolution) {
   const auto [nx, ny, nz] = resolution.cuboid;
-  for (const int n : {nx, ny, nz})
+  for (const int n : {nx, ny, nz}) {
     require_at_least(2, n, "a cuboid's number of points along a side");
+  }
   const auto is_end = [](int i, int count) { return i == 0 || i == count - 1; };
   Points points;
   for (int i = 0; i < nx; ++i) {
     for (int j = 0; j < ny; ++j) {
       for (int k = 0; k < nz; ++k) {
-        if (!is_end(i, nx) && !is_end(j, ny) && !is_end(k, nz)) continue;
+        if (!is_end(i, nx) && !is_end(j, ny) && !is_end(k, nz)) {
+          continue;
+        }
         points.emplace_back(along(cuboid.size.x(), i, nx), along(cuboid.size.y(), j, ny),
                             along(cuboid.size.z(), k, nz));
       }
@@ -52,7 +55,9 @@ Points sample(const Cuboid& cuboid, const SurfaceResolution& resolution) {
 
 Points sample(const Sphere& sphere, const SurfaceResolution& resolution) {
   const auto [rings, around] = resolution.sphere;
-  if (rings == 0 && around == 0) return {};
+  if (rings == 0 && around == 0) {
+    return {};
+  }
   require_at_least(1, rings, "a sphere's number of rings");
   require_at_least(1, around, "a sphere's number of points of each ring");
   const double r = sphere.radius;
@@ -106,13 +111,17 @@ Eigen::Vector3d rate(const Sphere& sphere, const Eigen::Vector3d& C, int) {
   return C / sphere.radius;
 }
 Eigen::Vector3d rate(const Cylinder& cylinder, const Eigen::Vector3d& C, int k) {
-  if (k == 0) return Eigen::Vector3d(C.x(), C.y(), 0.0) / cylinder.radius;
+  if (k == 0) {
+    return Eigen::Vector3d(C.x(), C.y(), 0.0) / cylinder.radius;
+  }
   return C.z() / cylinder.length * Eigen::Vector3d::UnitZ();
 }
 Eigen::Vector3d rate(const Capsule& capsule, const Eigen::Vector3d& C, int k) {
   // Between the half-balls a capsule is a cylinder; in them, points keep their share of the radius.
   const double half = 0.5 * capsule.length;
-  if (k == 1) return std::clamp(C.z() / capsule.length, -0.5, 0.5) * Eigen::Vector3d::UnitZ();
+  if (k == 1) {
+    return std::clamp(C.z() / capsule.length, -0.5, 0.5) * Eigen::Vector3d::UnitZ();
+  }
   return Eigen::Vector3d(C.x(), C.y(), C.z() - std::clamp(C.z(), -half, half)) / capsule.radius;
 }
 

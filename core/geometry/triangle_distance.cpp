@@ -100,12 +100,16 @@ int TriangleDistance::add_node(std::vector<int>& order, int first, int last) {
   Eigen::AlignedBox3d box;
   Eigen::AlignedBox3d centres;
   for (int i = first; i < last; ++i) {
-    for (const Eigen::Vector3d& corner : triangles_[at(order[at(i)])].corners) box.extend(corner);
+    for (const Eigen::Vector3d& corner : triangles_[at(order[at(i)])].corners) {
+      box.extend(corner);
+    }
     centres.extend(centre(order[at(i)]));
   }
   const int place = static_cast<int>(nodes_.size());
   nodes_.push_back({box, first, last - first, 0});
-  if (last - first <= kLeafTriangles) return place;
+  if (last - first <= kLeafTriangles) {
+    return place;
+  }
 
   Eigen::Index axis = 0;
   centres.sizes().maxCoeff(&axis);
@@ -122,7 +126,9 @@ int TriangleDistance::add_node(std::vector<int>& order, int first, int last) {
 void TriangleDistance::improve(const Eigen::Vector3d& x, int triangle, Nearest& nearest) const {
   const auto& [corners, normal] = triangles_[at(triangle)];
   const double height = normal.dot(x - corners[0]);
-  if (!(height * height < nearest.squared)) return;
+  if (!(height * height < nearest.squared)) {
+    return;
+  }
 
   bool over_face = true;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -159,13 +165,21 @@ void TriangleDistance::search(const Eigen::Vector3d& x, Nearest& nearest) const 
   waiting[count++] = {0.0, 0};
   while (count > 0) {
     const auto [squared, place] = waiting[--count];
-    if (!(squared < nearest.squared)) continue;
+    if (!(squared < nearest.squared)) {
+      continue;
+    }
     const Node& node = nodes_[at(place)];
-    for (int t = node.first; t < node.first + node.count; ++t) improve(x, t, nearest);
-    if (node.count > 0) continue;
+    for (int t = node.first; t < node.first + node.count; ++t) {
+      improve(x, t, nearest);
+    }
+    if (node.count > 0) {
+      continue;
+    }
     std::pair<double, int> near(nodes_[at(place + 1)].box.squaredExteriorDistance(x), place + 1);
     std::pair<double, int> far(nodes_[at(node.second)].box.squaredExteriorDistance(x), node.second);
-    if (far.first < near.first) std::swap(near, far);
+    if (far.first < near.first) {
+      std::swap(near, far);
+    }
     waiting[count++] = far;
     waiting[count++] = near;
   }
@@ -177,7 +191,9 @@ double TriangleDistance::signed_distance(const Eigen::Vector3d& x) const {
 }
 
 double TriangleDistance::signed_distance(const Eigen::Vector3d& x, int& hint) const {
-  if (x.hasNaN()) return std::numeric_limits<double>::quiet_NaN();
+  if (x.hasNaN()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   Nearest nearest = {std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero(), 0, kFace};
   improve(x, hint, nearest);
   search(x, nearest);

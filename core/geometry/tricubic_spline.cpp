@@ -51,7 +51,9 @@ void interpolate_line(std::vector<double>& line, std::vector<double>& ratio) {
     line[i] = (6.0 * line[i] - line[i - 1]) * ratio[i];
   }
   line[last - 1] = d1;
-  for (std::size_t i = last - 2; i > 2; --i) line[i] -= ratio[i] * line[i + 1];
+  for (std::size_t i = last - 2; i > 2; --i) {
+    line[i] -= ratio[i] * line[i + 1];
+  }
   line[1] = 6.0 * f1 - 4.0 * c1 - line[3];
   line[0] = 6.0 * f0 - 4.0 * line[1] - c1;
   line[last] = 6.0 * g1 - 4.0 * d1 - line[last - 2];
@@ -70,9 +72,13 @@ void interpolate_axis(std::vector<double>& grid, const Eigen::Vector3i& count, i
   for (int i = 0; i < count[u]; ++i) {
     for (int j = 0; j < count[v]; ++j) {
       const std::size_t first = to_size(i) * strides[to_size(u)] + to_size(j) * strides[to_size(v)];
-      for (std::size_t k = 0; k < line.size(); ++k) line[k] = grid[first + k * stride];
+      for (std::size_t k = 0; k < line.size(); ++k) {
+        line[k] = grid[first + k * stride];
+      }
       interpolate_line(line, ratio);
-      for (std::size_t k = 0; k < line.size(); ++k) grid[first + k * stride] = line[k];
+      for (std::size_t k = 0; k < line.size(); ++k) {
+        grid[first + k * stride] = line[k];
+      }
     }
   }
 }
@@ -93,8 +99,9 @@ AxisWeights axis_weights(double t, int count) {
   const double w = 1.0 - u;
   const int first = std::isnan(t) ? 0 : static_cast<int>(cell);
   AxisWeights axis = {};
-  for (int i = 0; i < 4; ++i)
+  for (int i = 0; i < 4; ++i) {
     axis.places[to_size(i)] = to_size(std::clamp(first + i, 0, count + 1));
+  }
   axis.weights[0] = {w * w * w / 6.0, 2.0 / 3.0 - u * u * (1.0 - u / 2.0),
                      2.0 / 3.0 - w * w * (1.0 - w / 2.0), u * u * u / 6.0};
   axis.weights[1] = {-w * w / 2.0, u * (1.5 * u - 2.0), w * (2.0 - 1.5 * w), u * u / 2.0};
@@ -113,10 +120,14 @@ TricubicSpline TricubicSpline::through(const GridNodes& nodes, const std::vector
   for (int k = 1; k <= nodes.count.z(); ++k) {
     for (int j = 1; j <= nodes.count.y(); ++j) {
       const std::size_t row = (to_size(k) * to_size(count.y()) + to_size(j)) * to_size(count.x());
-      for (int i = 1; i <= nodes.count.x(); ++i) grid[row + to_size(i)] = *value++;
+      for (int i = 1; i <= nodes.count.x(); ++i) {
+        grid[row + to_size(i)] = *value++;
+      }
     }
   }
-  for (int axis = 0; axis < 3; ++axis) interpolate_axis(grid, count, axis);
+  for (int axis = 0; axis < 3; ++axis) {
+    interpolate_axis(grid, count, axis);
+  }
   return {nodes, std::move(grid)};
 }
 
@@ -144,8 +155,12 @@ auto TricubicSpline::derivatives(const Eigen::Vector3d& x) const {
       const double* const line = &coefficients_[wz.places[k] * slice + wy.places[j] * row];
       for (std::size_t a = 0; a < kCount; ++a) {
         double sum = 0.0;
-        for (std::size_t i = 0; i < 4; ++i) sum += wx.weights[a][i] * line[wx.places[i]];
-        for (std::size_t b = 0; a + b < kCount; ++b) in_slice[a][b] += wy.weights[b][j] * sum;
+        for (std::size_t i = 0; i < 4; ++i) {
+          sum += wx.weights[a][i] * line[wx.places[i]];
+        }
+        for (std::size_t b = 0; a + b < kCount; ++b) {
+          in_slice[a][b] += wy.weights[b][j] * sum;
+        }
       }
     }
     for (std::size_t a = 0; a < kCount; ++a) {
@@ -183,7 +198,9 @@ Eigen::Matrix3d TricubicSpline::hessian_slope(const Eigen::Vector3d& x,
     for (int j = 0; j < 3; ++j) {
       for (int k = 0; k < 3; ++k) {
         std::array<std::size_t, 3> order = {};
-        for (const int axis : {i, j, k}) ++order[to_size(axis)];
+        for (const int axis : {i, j, k}) {
+          ++order[to_size(axis)];
+        }
         slope(i, j) += D[order[0]][order[1]][order[2]] * direction[k] / (h * h * h);
       }
     }

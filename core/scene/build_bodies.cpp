@@ -88,8 +88,12 @@ class BodyMaker {
     const Pose X_OB = {principal.axes, moments.centre};
     const Pose X_BO = inverse(X_OB);
     Pose X_JB = pose(body_.pos, body_.quat);
-    if (shape.transform_type == MeshTransform::kObjToJoint) X_JB = X_JB * X_OB;
-    if (shape.transform_type == MeshTransform::kObjToWorld) X_JB = inverse(X_WJ_) * X_JB * X_OB;
+    if (shape.transform_type == MeshTransform::kObjToJoint) {
+      X_JB = X_JB * X_OB;
+    }
+    if (shape.transform_type == MeshTransform::kObjToWorld) {
+      X_JB = inverse(X_WJ_) * X_JB * X_OB;
+    }
     BuiltBody built{hbar::Body{body_.name,
                                X_JB,
                                body_.density * moments.volume,
@@ -100,7 +104,9 @@ class BodyMaker {
     built.body.contact_points = transformed(
         X_BO, shape.contacts ? contacts("body", body_.line, *shape.contacts, shape.scale)
                              : spread_vertices(mesh, moments.centre, shape.contact_count));
-    for (Eigen::Vector3d& vertex : mesh.vertices) vertex = X_BO.R * vertex + X_BO.p;
+    for (Eigen::Vector3d& vertex : mesh.vertices) {
+      vertex = X_BO.R * vertex + X_BO.p;
+    }
     built.mesh = BodyMesh{std::move(mesh), scene_.folder / shape.filename, shape.distance_cells};
     return built;
   }
@@ -112,7 +118,9 @@ class BodyMaker {
       for (Eigen::Vector3d& point : mesh.vertices) {
         point = point.cwiseProduct(vector(shape.scale));
       }
-      if (!is_closed(mesh)) mesh = merge_equal_vertices(mesh);
+      if (!is_closed(mesh)) {
+        mesh = merge_equal_vertices(mesh);
+      }
       check_solid(mesh);
       return mesh;
     });
@@ -146,7 +154,9 @@ class BodyMaker {
 
 int BuiltBodies::find(const std::string& body) const {
   const auto place = link_of.find(body);
-  if (place == link_of.end()) throw InvalidInput(concat("no body is named '", body, "'"));
+  if (place == link_of.end()) {
+    throw InvalidInput(concat("no body is named '", body, "'"));
+  }
   return place->second;
 }
 

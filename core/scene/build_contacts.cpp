@@ -69,9 +69,13 @@ class ContactMaker {
  private:
   [[nodiscard]] ContactSurface surface_of(int link, bool caps) {
     const std::optional<BodyMesh>& mesh = bodies_.of_link.at(static_cast<std::size_t>(link)).mesh;
-    if (!mesh) return OwnShape{caps};
+    if (!mesh) {
+      return OwnShape{caps};
+    }
     std::shared_ptr<const DistanceField>& field = fields_[link];
-    if (!field) field = cached_mesh_distance(mesh->surface, mesh->cells, mesh->file);
+    if (!field) {
+      field = cached_mesh_distance(mesh->surface, mesh->cells, mesh->file);
+    }
     return field;
   }
 
@@ -95,7 +99,9 @@ void add_contacts(const Scene& scene, const BuiltBodies& bodies, ModelBuilder& b
   ContactMaker maker(scene, bodies);
   for (const Contact& contact : scene.description.contacts) {
     with_place(place_of(scene, contact), [&] {
-      for (hbar::Contact& made : maker.make(contact)) builder.add_contact(std::move(made));
+      for (hbar::Contact& made : maker.make(contact)) {
+        builder.add_contact(std::move(made));
+      }
     });
   }
 }

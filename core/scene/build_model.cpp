@@ -55,7 +55,9 @@ hbar::Joint make_joint(const Joint& joint, const Pose& X_WP) {
   made.name = joint.name;
   made.kind = joint_kind(joint);
   made.X_PJ = pose(joint.pos, joint.quat);
-  if (joint.frame == Frame::kWorld) made.X_PJ = inverse(X_WP) * made.X_PJ;
+  if (joint.frame == Frame::kWorld) {
+    made.X_PJ = inverse(X_WP) * made.X_PJ;
+  }
   made.damping = joint.damping;
   made.stiffness = joint.stiffness;
   made.rest = Eigen::Map<const Eigen::VectorXd>(joint.rest.data(),
@@ -93,7 +95,9 @@ void add_robot(const Scene& scene, const Robot& robot, ModelBuilder& builder,
 
 int link_of(const std::unordered_map<std::string, int>& link_of_joint, const std::string& joint) {
   const auto place = link_of_joint.find(joint);
-  if (place == link_of_joint.end()) throw InvalidInput(concat("no joint is named '", joint, "'"));
+  if (place == link_of_joint.end()) {
+    throw InvalidInput(concat("no joint is named '", joint, "'"));
+  }
   return place->second;
 }
 

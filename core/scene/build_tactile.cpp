@@ -33,7 +33,9 @@ std::vector<SensorPoint> rectangle_points(const RectArray& rect) {
 std::vector<SensorPoint> listed_points(const Scene& scene, const PointList& list) {
   const Pose X = pose(list.pos, list.quat);
   std::vector<SensorPoint> points = read_sensor_points(scene.folder / list.spec);
-  if (points.empty()) throw InvalidInput("the file has no point; a sensor has at least one");
+  if (points.empty()) {
+    throw InvalidInput("the file has no point; a sensor has at least one");
+  }
   for (SensorPoint& point : points) {
     point = {X.R * point.position + X.p, X.R * point.axis0, X.R * point.axis1};
   }

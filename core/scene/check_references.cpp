@@ -15,7 +15,9 @@ class Names {
   void declare(const std::string& name, const T& what, std::string_view element,
                const ReadContext& context) {
     const auto [place, is_new] = by_name_.emplace(name, &what);
-    if (is_new) return;
+    if (is_new) {
+      return;
+    }
     throw InvalidInput(attribute_place(context, what.line.number, element, "name", name) +
                        concat("the ", element, " of line ", place->second->line.number,
                               " has this name; names of ", plural(element), " must differ"));
@@ -26,9 +28,13 @@ class Names {
                 std::string_view attribute, std::string_view kind,
                 const ReadContext& context) const {
     const auto place = by_name_.find(name);
-    if (place != by_name_.end()) return *place->second;
+    if (place != by_name_.end()) {
+      return *place->second;
+    }
     std::vector<std::string> names;
-    for (const auto& [known, what] : by_name_) names.push_back(known);
+    for (const auto& [known, what] : by_name_) {
+      names.push_back(known);
+    }
     std::sort(names.begin(), names.end());
     throw InvalidInput(attribute_place(context, line, element, attribute, name) +
                        concat("no ", kind, " has this name; ") + unknown_name_hint(name, names));
@@ -76,14 +82,20 @@ struct BodyNames {
 };
 
 BodyNames names_of_bodies(ContactKind kind) {
-  if (kind == ContactKind::kGround) return {"body", ""};
-  if (kind == ContactKind::kCuboidCuboid) return {"body_a", "body_b"};
+  if (kind == ContactKind::kGround) {
+    return {"body", ""};
+  }
+  if (kind == ContactKind::kCuboidCuboid) {
+    return {"body_a", "body_b"};
+  }
   return {"general_body", "primitive_body"};
 }
 
 void check_points(const Contact& contact, const Body& body, bool against_mesh,
                   const ReadContext& context) {
-  if (has_contact_points(body, against_mesh)) return;
+  if (has_contact_points(body, against_mesh)) {
+    return;
+  }
   const bool ball = std::holds_alternative<SphereBody>(body.shape);
   throw InvalidInput(
       attribute_place(context, contact.line.number, contact_element(contact.kind),
@@ -105,7 +117,9 @@ void check_pair(const Contact& contact, const Body& a, const Body& b, const Read
   }
   if (contact.kind == ContactKind::kCuboidCuboid) {
     for (const Body* body : {&a, &b}) {
-      if (std::holds_alternative<CuboidBody>(body->shape)) continue;
+      if (std::holds_alternative<CuboidBody>(body->shape)) {
+        continue;
+      }
       throw InvalidInput(place(body == &a ? first : second, *body) +
                          "this body is not a cuboid; both must be");
     }
@@ -132,7 +146,9 @@ void check_contacts(const Description& description, const Names<Body>& bodies,
       against_mesh = std::holds_alternative<MeshBody>(b.shape);
     }
     check_points(contact, a, against_mesh, context);
-    if (!contact.name) continue;
+    if (!contact.name) {
+      continue;
+    }
     const auto [other, is_new] = named.emplace(*contact.name, line);
     if (!is_new) {
       throw InvalidInput(attribute_place(context, line, element, "name", *contact.name) +

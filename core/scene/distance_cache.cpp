@@ -44,10 +44,14 @@ std::filesystem::path distance_cache_path(const TriangleMesh& mesh_in_body_frame
   sum.add(cells);
   sum.add(mesh_in_body_frame.vertices.size());
   for (const Eigen::Vector3d& vertex : mesh_in_body_frame.vertices) {
-    for (const double coordinate : vertex) sum.add(coordinate);
+    for (const double coordinate : vertex) {
+      sum.add(coordinate);
+    }
   }
   for (const std::array<int, 3>& triangle : mesh_in_body_frame.triangles) {
-    for (const int index : triangle) sum.add(index);
+    for (const int index : triangle) {
+      sum.add(index);
+    }
   }
   std::filesystem::path path = mesh_file;
   path += "." + hexadecimal(sum.value()) + ".hbar-distance";
@@ -58,7 +62,9 @@ std::shared_ptr<const DistanceField> cached_mesh_distance(const TriangleMesh& me
                                                           int cells,
                                                           const std::filesystem::path& mesh_file) {
   const std::filesystem::path path = distance_cache_path(mesh_in_body_frame, cells, mesh_file);
-  if (auto kept = read_grid(path)) return kept;
+  if (auto kept = read_grid(path)) {
+    return kept;
+  }
   auto grid = std::make_shared<DistanceGrid>(mesh_in_body_frame, cells);
   try {
     write_file_atomically(path, grid->bytes());

@@ -19,7 +19,9 @@ PrincipalAxes principal_axes(const Eigen::Matrix3d& inertia) {
   for (int i = 0; i < 2; ++i) {
     Eigen::Index largest = 0;
     result.axes.col(i).cwiseAbs().maxCoeff(&largest);
-    if (result.axes(largest, i) < 0.0) result.axes.col(i) *= -1.0;
+    if (result.axes(largest, i) < 0.0) {
+      result.axes.col(i) *= -1.0;
+    }
   }
   result.axes.col(2) = result.axes.col(0).cross(result.axes.col(1)).normalized();
   return result;

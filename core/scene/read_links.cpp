@@ -18,8 +18,12 @@ constexpr double kParallel = 1e-9;
 JointType joint_type(std::size_t choice) {
   constexpr std::size_t kSpherical = 11;  // the two short spellings follow the canonical ones
   constexpr std::size_t kFree3d = 12;
-  if (choice == kSpherical) return JointType::kSphericalEuler;
-  if (choice == kFree3d) return JointType::kFree3dEuler;
+  if (choice == kSpherical) {
+    return JointType::kSphericalEuler;
+  }
+  if (choice == kFree3d) {
+    return JointType::kFree3dEuler;
+  }
   return static_cast<JointType>(choice);
 }
 
@@ -28,8 +32,12 @@ Eigen::Vector3d direction(const Vec3& v) {
 }
 
 void check_limits(const XmlElement& element, const Joint& joint) {
-  if (!joint.lim || joint.type == JointType::kFixed) return;
-  if ((*joint.lim)[0] <= 0.0 && (*joint.lim)[1] >= 0.0) return;
+  if (!joint.lim || joint.type == JointType::kFixed) {
+    return;
+  }
+  if ((*joint.lim)[0] <= 0.0 && (*joint.lim)[1] >= 0.0) {
+    return;
+  }
   if (joint.lim_stiffness > 0.0) {
     const std::string name = joint.name.empty() ? "" : concat(" name=\"", joint.name, "\"");
     element.context().notice(element.line(),
@@ -80,7 +88,9 @@ void check_inertia(const XmlElement& element, const std::vector<double>& inertia
                                        : Eigen::Vector3d(inertia[0], inertia[1], inertia[2]);
   const std::string hint = concat(full ? "the principal moments" : "principal moments",
                                   " are > 0 and none is above the sum of the other two");
-  if (!(moments.minCoeff() > 0.0)) element.fail("inertia", "a moment is not positive", hint);
+  if (!(moments.minCoeff() > 0.0)) {
+    element.fail("inertia", "a moment is not positive", hint);
+  }
   if (!are_physical_moments(moments)) {
     element.fail("inertia", "one moment is above the sum of the other two", hint);
   }
@@ -118,8 +128,9 @@ void read_body_children(const XmlElement& element, Body& body) {
   for (const tinyxml2::XMLElement* xml : checked_children(element.xml(), element.context())) {
     const XmlElement child(*xml, element.context());
     auto* const abstract = std::get_if<AbstractBody>(&body.shape);
-    if (abstract == nullptr)
+    if (abstract == nullptr) {
       child.fail("stands in a body that is not abstract; only those have it");
+    }
     if (child.name() == "visual") {
       abstract->visual =
           Visual{child.text("mesh"), child.numbers<3>("pos"), child.quaternion("quat")};
@@ -167,33 +178,47 @@ class RobotReader {
     name_link(element, link);
     by_name_.emplace(link.name, static_cast<int>(index));
     robot_.links[index] = std::move(link);
-    for (const tinyxml2::XMLElement* child : nested) read_link(*child, static_cast<int>(index));
+    for (const tinyxml2::XMLElement* child : nested) {
+      read_link(*child, static_cast<int>(index));
+    }
   }
 
   [[nodiscard]] Robot take() { return std::move(robot_); }
 
  private:
   int parent_of(const XmlElement& element, int enclosing) const {
-    if (!element.has("parent")) return enclosing;
+    if (!element.has("parent")) {
+      return enclosing;
+    }
     if (enclosing >= 0) {
       element.fail("parent", "this link is nested", "only links written under <robot> have parent");
     }
     const std::string name = element.text("parent");
     const auto parent = by_name_.find(name);
-    if (parent != by_name_.end()) return parent->second;
+    if (parent != by_name_.end()) {
+      return parent->second;
+    }
     element.fail("parent", "no link of this name comes before in this robot",
                  "parent names an earlier link of the same robot");
   }
 
   static void name_link(const XmlElement& element, Link& link) {
     std::string& name = link.name;
-    if (element.has("name")) name = element.text("name");
-    if (name.empty()) name = link.body.name.empty() ? link.joint.name : link.body.name;
+    if (element.has("name")) {
+      name = element.text("name");
+    }
+    if (name.empty()) {
+      name = link.body.name.empty() ? link.joint.name : link.body.name;
+    }
     if (name.empty()) {
       element.fail("attribute name is missing; name the link, its joint or its body");
     }
-    if (link.joint.name.empty()) link.joint.name = name;
-    if (link.body.name.empty()) link.body.name = name;
+    if (link.joint.name.empty()) {
+      link.joint.name = name;
+    }
+    if (link.body.name.empty()) {
+      link.body.name = name;
+    }
   }
 
   ReadContext& context_;
@@ -211,7 +236,9 @@ Joint read_joint(XmlElement element) {
   joint.frame = static_cast<Frame>(element.choice("frame"));
   joint.pos = element.numbers<3>("pos");
   joint.quat = element.quaternion("quat");
-  if (element.applies("axis")) joint.axis = element.numbers<3>("axis");
+  if (element.applies("axis")) {
+    joint.axis = element.numbers<3>("axis");
+  }
   if (element.applies("axis0")) {
     joint.axis0 = element.numbers<3>("axis0");
     joint.axis1 = element.numbers<3>("axis1");
@@ -224,7 +251,9 @@ Joint read_joint(XmlElement element) {
   joint.stiffness = element.number("stiffness");
   const auto dof = static_cast<std::size_t>(coordinate_count(joint.type));
   joint.rest.assign(dof, 0.0);
-  if (element.has("rest") && dof > 0) joint.rest = element.list("rest", dof);
+  if (element.has("rest") && dof > 0) {
+    joint.rest = element.list("rest", dof);
+  }
   joint.lim = element.optional_numbers<2>("lim");
   joint.lim_stiffness = element.number("lim_stiffness");
   check_limits(element, joint);
@@ -239,7 +268,9 @@ Body read_body(XmlElement element) {
   body.shape = read_shape(element, type);
   body.pos = element.numbers<3>("pos");
   body.quat = element.quaternion("quat");
-  if (element.applies("density")) body.density = element.number("density");
+  if (element.applies("density")) {
+    body.density = element.number("density");
+  }
   body.rgba = element.optional_numbers<4>("rgba");
   body.texture = element.optional_text("texture");
   read_body_children(element, body);

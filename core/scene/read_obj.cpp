@@ -24,7 +24,9 @@ void for_each_line(std::string_view text, Line&& line) {
     const std::string_view whole = text.substr(0, end);
     const std::vector<std::string_view> words =
         split_words(whole.substr(0, std::min(whole.find('#'), whole.size())));
-    if (!words.empty()) line(number, words);
+    if (!words.empty()) {
+      line(number, words);
+    }
     text.remove_prefix(std::min(end + 1, text.size()));
   }
 }
@@ -40,7 +42,9 @@ Eigen::Vector3d read_point(const std::vector<std::string_view>& words, std::size
   for (std::size_t i = 0; i < 3; ++i) {
     std::string reason;
     const std::optional<double> value = parse_number(words[first + i], reason);
-    if (!value) fail(name, line, reason + "; a point is 3 numbers");
+    if (!value) {
+      fail(name, line, reason + "; a point is 3 numbers");
+    }
     point[static_cast<Eigen::Index>(i)] = *value;
   }
   return point;
@@ -58,7 +62,9 @@ void read_rows(std::string_view text, const std::string& name, std::size_t word_
     if (!count) {
       std::string reason;
       count = parse_integer(words[0], reason);
-      if (!count) fail(name, line, reason + "; the file begins with the number of points");
+      if (!count) {
+        fail(name, line, reason + "; the file begins with the number of points");
+      }
       if (words.size() != 1 || *count < 0) {
         fail(name, line, "the file begins with the number of points, alone in its line");
       }
@@ -70,7 +76,9 @@ void read_rows(std::string_view text, const std::string& name, std::size_t word_
     row(line, words);
     ++found;
   });
-  if (!count) fail(name, last, "the file is empty; it begins with the number of points");
+  if (!count) {
+    fail(name, last, "the file is empty; it begins with the number of points");
+  }
   if (found != *count) {
     fail(name, last, concat("found ", found, " points; the first line says ", *count));
   }
@@ -115,7 +123,9 @@ class ObjReader {
 
   void read_face(int line, const std::vector<std::string_view>& words) {
     std::vector<int> corners;
-    for (std::size_t i = 1; i < words.size(); ++i) corners.push_back(read_corner(line, words[i]));
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      corners.push_back(read_corner(line, words[i]));
+    }
     if (corners.size() < 3) {
       fail(name_, line, concat("f has ", corners.size(), " corners; a face has at least 3"));
     }
@@ -142,12 +152,18 @@ class ObjReader {
       const std::string_view word = rest.substr(0, slash);
       more = slash < rest.size();
       rest.remove_prefix(std::min(slash + 1, rest.size()));
-      if (part > 2) fail(name_, line, concat("\"", quotable(corner), "\" has too many /", form));
+      if (part > 2) {
+        fail(name_, line, concat("\"", quotable(corner), "\" has too many /", form));
+      }
       const bool may_be_empty = part == 1 && more;
-      if (word.empty() && may_be_empty) continue;
+      if (word.empty() && may_be_empty) {
+        continue;
+      }
       std::string reason;
       parts[part] = parse_integer(word, reason);
-      if (!parts[part]) fail(name_, line, concat("\"", quotable(corner), "\": ", reason, form));
+      if (!parts[part]) {
+        fail(name_, line, concat("\"", quotable(corner), "\": ", reason, form));
+      }
     }
     const int count = static_cast<int>(mesh_.vertices.size());
     const int given = *parts[0];

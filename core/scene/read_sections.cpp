@@ -32,7 +32,9 @@ RectArray read_rect_array(const XmlElement& element) {
 }
 
 ContactKind contact_kind(std::string_view name) {
-  if (name == contact_element(ContactKind::kGround)) return ContactKind::kGround;
+  if (name == contact_element(ContactKind::kGround)) {
+    return ContactKind::kGround;
+  }
   return name == contact_element(ContactKind::kGeneralPrimitive) ? ContactKind::kGeneralPrimitive
                                                                  : ContactKind::kCuboidCuboid;
 }

@@ -21,9 +21,13 @@ class SceneReader {
     description_.model = XmlElement(root, context_).text("model");
     const auto children = checked_children(root, context_);
     for (const tinyxml2::XMLElement* child : children) {
-      if (std::string_view(child->Name()) == "default") read_defaults(*child, context_);
+      if (std::string_view(child->Name()) == "default") {
+        read_defaults(*child, context_);
+      }
     }
-    for (const tinyxml2::XMLElement* child : children) read_section(*child);
+    for (const tinyxml2::XMLElement* child : children) {
+      read_section(*child);
+    }
     notice_missing_ground();
   }
 
@@ -65,7 +69,9 @@ class SceneReader {
   void notice_ground_damping(const XmlElement& element, const Contact& contact) {
     const bool silent =
         contact.kind == ContactKind::kGround && contact.damping > 0.0 && !element.has("law");
-    if (!silent) return;
+    if (!silent) {
+      return;
+    }
     context_.notice(element.line(),
                     "<ground_contact>: damping without law is multiplied by the depth; "
                     "law=\"linear\" is what earlier readers of this format do");
@@ -73,9 +79,13 @@ class SceneReader {
 
   /// A scene may leave its ground out, but hardly by intention where bodies touch it.
   void notice_missing_ground() {
-    if (description_.ground) return;
+    if (description_.ground) {
+      return;
+    }
     for (const Contact& contact : description_.contacts) {
-      if (contact.kind != ContactKind::kGround) continue;
+      if (contact.kind != ContactKind::kGround) {
+        continue;
+      }
       context_.notice(contact.line.number,
                       "<ground_contact>: the scene has no <ground>, so it is the plane z = 0");
     }
@@ -112,7 +122,9 @@ Scene read_scene_text(std::string_view text, const std::string& name,
   scene.folder = folder;
   SceneReader(context, scene.description).read_root(root);
   std::size_t links = 0;
-  for (const Robot& robot : scene.description.robots) links += robot.links.size();
+  for (const Robot& robot : scene.description.robots) {
+    links += robot.links.size();
+  }
   if (links == 0) {
     throw InvalidInput(element_place(context, root.GetLineNum(), "redmax") +
                        "the scene has no link; <robot> holds at least one <link>");

@@ -33,7 +33,9 @@ std::string range_text(Range range) {
 
 std::string joined(const std::vector<std::string>& parts, const char* separator) {
   std::string out;
-  for (const std::string& part : parts) out += (out.empty() ? "" : separator) + part;
+  for (const std::string& part : parts) {
+    out += (out.empty() ? "" : separator) + part;
+  }
   return out;
 }
 
@@ -68,8 +70,12 @@ std::string value_text(const AttributeInfo& attribute) {
 }
 
 std::string default_text(const AttributeInfo& attribute) {
-  if (attribute.required) return "required";
-  if (attribute.fallback == nullptr || *attribute.fallback == '\0') return "none";
+  if (attribute.required) {
+    return "required";
+  }
+  if (attribute.fallback == nullptr || *attribute.fallback == '\0') {
+    return "none";
+  }
   return concat("`", attribute.fallback, "`");
 }
 
@@ -88,7 +94,9 @@ std::string attribute_row(const AttributeInfo& attribute) {
 }
 
 std::string placement(const ElementInfo& element) {
-  if (element.parents.empty()) return "The root of the file.";
+  if (element.parents.empty()) {
+    return "The root of the file.";
+  }
   std::string text = "In `<" + joined(listed(element.parents, '|'), ">`, `<") + ">`";
   return text + (element.single ? ", at most once." : ", any number of times.");
 }
@@ -112,7 +120,9 @@ bool is_listed(std::string_view alternatives, char separator, std::string_view n
 
 const ElementInfo* find_element(std::string_view name) {
   for (const ElementInfo& element : vocabulary()) {
-    if (element.name == name) return &element;
+    if (element.name == name) {
+      return &element;
+    }
   }
   return nullptr;
 }
@@ -120,7 +130,9 @@ const ElementInfo* find_element(std::string_view name) {
 const AttributeInfo* find_attribute(const ElementInfo& element, std::string_view name,
                                     std::string_view type) {
   for (const AttributeInfo& attribute : element.attributes) {
-    if (attribute.name != name) continue;
+    if (attribute.name != name) {
+      continue;
+    }
     if (type.empty() || attribute.types.empty() || is_listed(attribute.types, ' ', type)) {
       return &attribute;
     }
@@ -131,7 +143,9 @@ const AttributeInfo* find_attribute(const ElementInfo& element, std::string_view
 std::vector<std::string> children_of(std::string_view parent) {
   std::vector<std::string> names;
   for (const ElementInfo& element : vocabulary()) {
-    if (is_listed(element.parents, '|', parent)) names.emplace_back(element.name);
+    if (is_listed(element.parents, '|', parent)) {
+      names.emplace_back(element.name);
+    }
   }
   return names;
 }
@@ -167,10 +181,14 @@ std::string vocabulary_markdown() {
   for (const ElementInfo& element : vocabulary()) {
     out += concat("### `<", element.name, ">`", element.extension ? " (+)" : "", "\n\n");
     out += concat(element.sentence, " ", placement(element), "\n\n");
-    if (element.attributes.empty()) continue;
+    if (element.attributes.empty()) {
+      continue;
+    }
     out += "| attribute | takes | unit | default | meaning |\n";
     out += "| --- | --- | --- | --- | --- |\n";
-    for (const AttributeInfo& attribute : element.attributes) out += attribute_row(attribute);
+    for (const AttributeInfo& attribute : element.attributes) {
+      out += attribute_row(attribute);
+    }
     out += "\n";
   }
   return out;

@@ -1,5 +1,6 @@
 #include "hbar/core/scene/write_xml.h"
 
+#include <array>
 #include <string_view>
 
 #include "hbar/core/base/error.h"
@@ -15,32 +16,16 @@ namespace {
 constexpr int kDeepestNesting = 40;
 
 std::string escaped(std::string_view text) {
+  constexpr std::string_view kSpecial = "&<>\"\n\r\t";
+  constexpr std::array kEscapes = {"&amp;", "&lt;", "&gt;", "&quot;", "&#10;", "&#13;", "&#9;"};
+  static_assert(kSpecial.size() == kEscapes.size());
   std::string out;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\n':
-        out += "&#10;";
-        break;
-      case '\r':
-        out += "&#13;";
-        break;
-      case '\t':
-        out += "&#9;";
-        break;
-      default:
-        out += c;
+    const std::size_t i = kSpecial.find(c);
+    if (i == std::string_view::npos) {
+      out += c;
+    } else {
+      out += kEscapes[i];
     }
   }
   return out;
@@ -80,7 +65,9 @@ class XmlWriter {
   template <typename T>
   void put(std::string_view name, const std::vector<T>& values) {
     std::string list;
-    for (const T& value : values) list += (list.empty() ? "" : " ") + number(value);
+    for (const T& value : values) {
+      list += (list.empty() ? "" : " ") + number(value);
+    }
     put(name, list);
   }
   template <typename T, std::size_t N>
@@ -89,7 +76,9 @@ class XmlWriter {
   }
   template <typename T>
   void put(std::string_view name, const std::optional<T>& value) {
-    if (value) put(name, *value);
+    if (value) {
+      put(name, *value);
+    }
   }
   /// A choice, spelled as the vocabulary does.
   template <typename Enum>
@@ -103,7 +92,9 @@ class XmlWriter {
   static std::string number(double value) { return format_number(value); }
   static std::string number(int value) { return std::to_string(value); }
   void end_tag() {
-    if (in_tag_) text_ += ">\n";
+    if (in_tag_) {
+      text_ += ">\n";
+    }
     in_tag_ = false;
   }
   void indent() { text_.append(2 * open_elements_.size(), ' '); }
@@ -125,7 +116,9 @@ void write_joint(XmlWriter& out, const Joint& joint) {
   out.put("axis1", joint.axis1);
   out.put("damping", joint.damping);
   out.put("stiffness", joint.stiffness);
-  if (!joint.rest.empty()) out.put("rest", joint.rest);
+  if (!joint.rest.empty()) {
+    out.put("rest", joint.rest);
+  }
   out.put("lim", joint.lim);
   out.put("lim_stiffness", joint.lim_stiffness);
   out.close();
@@ -186,7 +179,9 @@ void write_body(XmlWriter& out, const Body& body) {
   out.put("type", choice_name("body", "type", body.shape.index()));
   out.put("pos", body.pos);
   out.put("quat", body.quat);
-  if (!std::holds_alternative<AbstractBody>(body.shape)) out.put("density", body.density);
+  if (!std::holds_alternative<AbstractBody>(body.shape)) {
+    out.put("density", body.density);
+  }
   out.put("rgba", body.rgba);
   out.put("texture", body.texture);
   std::visit([&out](const auto& shape) { write_shape(out, shape); }, body.shape);
@@ -202,9 +197,13 @@ std::vector<int> nesting(const Robot& robot) {
     while (ancestor >= 0 && ancestor != parent) {
       ancestor = robot.links[static_cast<std::size_t>(ancestor)].parent;
     }
-    if (ancestor != parent) return {};
+    if (ancestor != parent) {
+      return {};
+    }
     depth.push_back(parent < 0 ? 1 : depth[static_cast<std::size_t>(parent)] + 1);
-    if (depth.back() > kDeepestNesting) return {};
+    if (depth.back() > kDeepestNesting) {
+      return {};
+    }
   }
   return depth;
 }
@@ -223,7 +222,9 @@ void write_robot(XmlWriter& out, const Robot& robot) {
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     const Link& link = robot.links[i];
     const int enclosing = depth.empty() ? 0 : depth[i] - 1;
-    for (; open_links > enclosing; --open_links) out.close();
+    for (; open_links > enclosing; --open_links) {
+      out.close();
+    }
     out.open("link");
     out.put("name", link.name);
     if (depth.empty() && link.parent >= 0) {
@@ -234,7 +235,9 @@ void write_robot(XmlWriter& out, const Robot& robot) {
     write_body(out, link.body);
     ++open_links;
   }
-  for (; open_links > 0; --open_links) out.close();
+  for (; open_links > 0; --open_links) {
+    out.close();
+  }
   out.close();
 }
 
@@ -252,7 +255,9 @@ void write_options(XmlWriter& out, const Description& description) {
   out.put("max_ls", description.solver_options.max_ls);
   out.put("linear_solver", description.solver_options.linear_solver);
   out.close();
-  if (!description.ground) return;
+  if (!description.ground) {
+    return;
+  }
   out.open("ground");
   out.put("pos", description.ground->pos);
   out.put("normal", description.ground->normal);
@@ -277,7 +282,9 @@ void write_one(XmlWriter& out, const Contact& contact) {
   const bool general = contact.kind == ContactKind::kGeneralPrimitive;
   out.open(contact_element(contact.kind));
   out.put(ground ? "body" : general ? "general_body" : "body_a", contact.body_a);
-  if (!ground) out.put(general ? "primitive_body" : "body_b", contact.body_b);
+  if (!ground) {
+    out.put(general ? "primitive_body" : "body_b", contact.body_b);
+  }
   out.put("name", contact.name);
   out.put("kn", contact.kn);
   out.put("kt", contact.kt);
@@ -288,8 +295,12 @@ void write_one(XmlWriter& out, const Contact& contact) {
   out.put_choice("friction", contact.friction);
   out.put("friction_width", contact.friction_width);
   out.put("adhesion", contact.adhesion);
-  if (!ground) out.put_choice("reaction", contact.reaction);
-  if (general) out.put("caps", contact.caps);
+  if (!ground) {
+    out.put_choice("reaction", contact.reaction);
+  }
+  if (general) {
+    out.put("caps", contact.caps);
+  }
   out.close();
 }
 
@@ -344,9 +355,13 @@ void write_one(XmlWriter& out, const VirtualShape& shape) {
 
 template <typename T>
 void write_all(XmlWriter& out, const char* section, const std::vector<T>& items) {
-  if (items.empty()) return;
+  if (items.empty()) {
+    return;
+  }
   out.open(section);
-  for (const T& item : items) write_one(out, item);
+  for (const T& item : items) {
+    write_one(out, item);
+  }
   out.close();
 }
 
@@ -357,7 +372,9 @@ std::string write_scene_text(const Description& description) {
   out.open("redmax");
   out.put("model", description.model);
   write_options(out, description);
-  for (const Robot& robot : description.robots) write_robot(out, robot);
+  for (const Robot& robot : description.robots) {
+    write_robot(out, robot);
+  }
   write_all(out, "actuator", description.motors);
   write_all(out, "contact", description.contacts);
   write_all(out, "variable", description.end_effectors);

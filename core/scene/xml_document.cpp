@@ -36,7 +36,9 @@ void check_bytes(std::string_view text, const std::string& file) {
     }
   }
   const bool blank = split_words(text).empty();
-  if (blank) fail(file, 1, "the file is empty");
+  if (blank) {
+    fail(file, 1, "the file is empty");
+  }
 }
 
 /// The name of the element tinyxml2 complains about, or nothing.
@@ -51,23 +53,36 @@ std::string blamed_element(const tinyxml2::XMLDocument& document) {
 /// begins on or before a line.
 std::string repeated_attribute(std::string_view text, int line, const std::string& element) {
   std::size_t end = 0;
-  for (int i = 0; i < line && end != std::string_view::npos; ++i) end = text.find('\n', end + 1);
+  for (int i = 0; i < line && end != std::string_view::npos; ++i) {
+    end = text.find('\n', end + 1);
+  }
   const std::size_t begin = text.rfind("<" + element, end);
-  if (element.empty() || begin == std::string_view::npos) return "";
+  if (element.empty() || begin == std::string_view::npos) {
+    return "";
+  }
   std::set<std::string, std::less<>> seen;
   std::size_t i = begin + 1 + element.size();
   while (i < text.size() && text[i] != '>') {
     const std::size_t equals = text.find('=', i);
     const std::size_t open = text.find_first_of("\"'", i);
-    if (equals == std::string_view::npos || open == std::string_view::npos) return "";
+    if (equals == std::string_view::npos || open == std::string_view::npos) {
+      return "";
+    }
     const auto words = split_words(text.substr(i, equals - i));
-    if (words.size() != 1) return "";
-    if (!seen.emplace(words[0]).second) return std::string(words[0]);
+    if (words.size() != 1) {
+      return "";
+    }
+    if (!seen.emplace(words[0]).second) {
+      return std::string(words[0]);
+    }
     const std::size_t close = text.find(text[open], open + 1);
-    if (close == std::string_view::npos) return "";
+    if (close == std::string_view::npos) {
+      return "";
+    }
     i = close + 1;
-    while (i < text.size() && (!split_words(text.substr(i, 1)).empty() ? text[i] == '/' : true))
+    while (i < text.size() && (!split_words(text.substr(i, 1)).empty() ? text[i] == '/' : true)) {
       ++i;
+    }
   }
   return "";
 }
@@ -112,7 +127,9 @@ const tinyxml2::XMLElement& parse_document(std::string_view text, const std::str
     fail_to_parse(document, text, file);
   }
   const tinyxml2::XMLElement* const root = document.RootElement();
-  if (root == nullptr) fail(file, 1, "the file has no element");
+  if (root == nullptr) {
+    fail(file, 1, "the file has no element");
+  }
   if (std::string_view(root->Name()) != "redmax") {
     fail(file, root->GetLineNum(), concat("<", quotable(root->Name()), ">: wrong root element"));
   }

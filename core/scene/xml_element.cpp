@@ -39,7 +39,9 @@ void check_placement(const tinyxml2::XMLElement& xml, std::string_view parent,
 }  // namespace
 
 void ReadContext::notice(int line, std::string_view text) {
-  if (!noticed.emplace(text).second) return;
+  if (!noticed.emplace(text).second) {
+    return;
+  }
   notices.push_back(concat(file, ":", line, ": ", text));
 }
 
@@ -59,7 +61,9 @@ XmlElement::XmlElement(const tinyxml2::XMLElement& xml, ReadContext& context)
     throw InvalidInput(element_place(context, line_, xml.Name()) + "unknown element");
   }
   check_attribute_names();
-  if (children_of(name()).empty()) static_cast<void>(checked_children(xml, context));
+  if (children_of(name()).empty()) {
+    static_cast<void>(checked_children(xml, context));
+  }
 }
 
 void XmlElement::check_attribute_names() const {
@@ -108,7 +112,9 @@ bool XmlElement::states(std::string_view attribute) const {
 }
 
 bool XmlElement::has(std::string_view attribute) const {
-  if (states(attribute)) return true;
+  if (states(attribute)) {
+    return true;
+  }
   const auto defaults = context_->defaults.find(name());
   return defaults != context_->defaults.end() &&
          defaults->second.find(attribute) != defaults->second.end();
@@ -121,7 +127,9 @@ AttributeText XmlElement::found(std::string_view attribute) const {
   const auto defaults = context_->defaults.find(name());
   if (defaults != context_->defaults.end()) {
     const auto value = defaults->second.find(attribute);
-    if (value != defaults->second.end()) return value->second;
+    if (value != defaults->second.end()) {
+      return value->second;
+    }
   }
   const AttributeInfo& info = row(attribute);
   if (info.fallback == nullptr) {
@@ -145,24 +153,34 @@ void XmlElement::fail(const std::string& reason) const {
 std::string XmlElement::text(std::string_view attribute) const {
   const AttributeText value = found(attribute);
   const bool may_be_empty = row(attribute).fallback != nullptr;
-  if (value.text.empty() && !may_be_empty) fail(attribute, "the text is empty");
+  if (value.text.empty() && !may_be_empty) {
+    fail(attribute, "the text is empty");
+  }
   return value.text;
 }
 
 std::optional<std::string> XmlElement::optional_text(std::string_view attribute) const {
-  if (!applies(attribute) || !has(attribute)) return std::nullopt;
+  if (!applies(attribute) || !has(attribute)) {
+    return std::nullopt;
+  }
   return text(attribute);
 }
 
 bool XmlElement::flag(std::string_view attribute) const {
   const std::string value = found(attribute).text;
-  if (value == "true" || value == "1") return true;
-  if (value == "false" || value == "0") return false;
+  if (value == "true" || value == "1") {
+    return true;
+  }
+  if (value == "false" || value == "0") {
+    return false;
+  }
   fail(attribute, concat("\"", quotable(value), "\" is neither"));
 }
 
 std::optional<bool> XmlElement::optional_flag(std::string_view attribute) const {
-  if (!has(attribute)) return std::nullopt;
+  if (!has(attribute)) {
+    return std::nullopt;
+  }
   return flag(attribute);
 }
 
@@ -170,7 +188,9 @@ std::size_t XmlElement::choice(std::string_view attribute) const {
   const std::string value = found(attribute).text;
   const std::vector<std::string> names = listed(row(attribute).choices, '|');
   const auto match = std::find(names.begin(), names.end(), value);
-  if (match == names.end()) fail(attribute, concat("unknown ", attribute));
+  if (match == names.end()) {
+    fail(attribute, concat("unknown ", attribute));
+  }
   return static_cast<std::size_t>(match - names.begin());
 }
 
@@ -181,7 +201,9 @@ std::vector<double> XmlElement::list(std::string_view attribute, std::size_t cou
   for (const std::string_view word : split_words(value.text)) {
     std::string reason;
     const std::optional<double> parsed = parse_number(word, reason);
-    if (!parsed) fail(attribute, reason);
+    if (!parsed) {
+      fail(attribute, reason);
+    }
     values.push_back(*parsed);
   }
   const auto first = count > 0 ? count : static_cast<std::size_t>(info.count);
@@ -199,7 +221,9 @@ std::vector<int> XmlElement::whole_list(std::string_view attribute) const {
   for (const std::string_view word : split_words(value.text)) {
     std::string reason;
     const std::optional<int> parsed = parse_integer(word, reason);
-    if (!parsed) fail(attribute, reason);
+    if (!parsed) {
+      fail(attribute, reason);
+    }
     values.push_back(*parsed);
   }
   if (values.size() != static_cast<std::size_t>(row(attribute).count)) {
@@ -243,7 +267,9 @@ void XmlElement::check_range(std::string_view attribute, const std::vector<doubl
       ok = all([](double v) { return v >= 0.0 && v <= 63.0; });
       break;
   }
-  if (!ok) fail(attribute, reason);
+  if (!ok) {
+    fail(attribute, reason);
+  }
 }
 
 void XmlElement::check_value(std::string_view attribute) const {
@@ -273,17 +299,23 @@ void XmlElement::check_value(std::string_view attribute) const {
 void XmlElement::check_any_type(std::string_view attribute) const {
   std::optional<InvalidInput> problem;
   for (const AttributeInfo& info : info_->attributes) {
-    if (info.name != attribute) continue;
+    if (info.name != attribute) {
+      continue;
+    }
     XmlElement typed = *this;
     typed.type_ = std::string(info.types.substr(0, info.types.find(' ')));
     try {
       typed.check_value(attribute);
       return;
     } catch (const InvalidInput& error) {
-      if (!problem) problem = error;
+      if (!problem) {
+        problem = error;
+      }
     }
   }
-  if (problem) throw InvalidInput(*problem);
+  if (problem) {
+    throw InvalidInput(*problem);
+  }
 }
 
 int XmlElement::integer(std::string_view attribute) const { return integers<1>(attribute)[0]; }
@@ -291,7 +323,9 @@ int XmlElement::integer(std::string_view attribute) const { return integers<1>(a
 double XmlElement::number(std::string_view attribute) const { return numbers<1>(attribute)[0]; }
 
 std::optional<double> XmlElement::optional_number(std::string_view attribute) const {
-  if (!applies(attribute) || !has(attribute)) return std::nullopt;
+  if (!applies(attribute) || !has(attribute)) {
+    return std::nullopt;
+  }
   return number(attribute);
 }
 
@@ -300,12 +334,20 @@ std::array<double, 4> XmlElement::quaternion(std::string_view attribute) const {
   const auto squared_length = [](const std::array<double, 4>& v) {
     return v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3];
   };
-  if (std::abs(squared_length(q) - 1.0) <= kUnitSlack) return q;
+  if (std::abs(squared_length(q) - 1.0) <= kUnitSlack) {
+    return q;
+  }
   double largest = 0.0;
-  for (const double v : q) largest = std::max(largest, std::abs(v));
-  for (double& v : q) v /= largest;  // neither overflows nor vanishes when squared
+  for (const double v : q) {
+    largest = std::max(largest, std::abs(v));
+  }
+  for (double& v : q) {
+    v /= largest;  // neither overflows nor vanishes when squared
+  }
   const double length = std::sqrt(squared_length(q));
-  for (double& v : q) v /= length;
+  for (double& v : q) {
+    v /= length;
+  }
   return q;
 }
 
@@ -324,7 +366,9 @@ std::vector<const tinyxml2::XMLElement*> checked_children(const tinyxml2::XMLEle
                      concat("<", name, ">: the text \"", quotable(text), "\" has no effect"));
     }
     const tinyxml2::XMLElement* const child = node->ToElement();
-    if (child == nullptr) continue;
+    if (child == nullptr) {
+      continue;
+    }
     check_placement(*child, name, context);
     const auto [first, is_new] = first_lines.emplace(child->Name(), child->GetLineNum());
     if (!is_new && find_element(child->Name())->single && name != "default") {

@@ -81,7 +81,9 @@ class XmlElement {
   template <std::size_t N>
   [[nodiscard]] std::optional<std::array<double, N>> optional_numbers(
       std::string_view attribute) const {
-    if (!applies(attribute) || !has(attribute)) return std::nullopt;
+    if (!applies(attribute) || !has(attribute)) {
+      return std::nullopt;
+    }
     return numbers<N>(attribute);
   }
   template <std::size_t N>
@@ -108,8 +110,12 @@ class XmlElement {
   template <typename T, std::size_t N>
   static std::array<T, N> to_array(const std::vector<T>& values) {
     std::array<T, N> out{};
-    if (values.size() != N) throw InvalidInput("vocabulary: an attribute's count is not its use");
-    for (std::size_t i = 0; i < N; ++i) out[i] = values[i];
+    if (values.size() != N) {
+      throw InvalidInput("vocabulary: an attribute's count is not its use");
+    }
+    for (std::size_t i = 0; i < N; ++i) {
+      out[i] = values[i];
+    }
     return out;
   }
   void check_value(std::string_view attribute) const;

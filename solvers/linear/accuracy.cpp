@@ -33,7 +33,9 @@ Twofold product(double a, const Twofold& b) {
 }
 
 void refuse_shapes(const char* where, const SparseMatrix& A, Eigen::Index x, Eigen::Index b) {
-  if (A.rows() == A.cols() && x == A.rows() && b == A.rows()) return;
+  if (A.rows() == A.cols() && x == A.rows() && b == A.rows()) {
+    return;
+  }
   throw InvalidInput(concat(where, ": the matrix is ", A.rows(), " x ", A.cols(), ", x has ", x,
                             " and b ", b, " rows; expected a square matrix and as many rows"));
 }
@@ -64,7 +66,9 @@ Residual residual_of(const SparseMatrix& A, System system, const VectorView<doub
   Residual result;
   result.difference.assign(b.data(), b.data() + b.size());
   std::vector<long double> row_sum(result.difference.size(), 0.0L);
-  for (const double value : b) result.size.push_back(std::abs(value));
+  for (const double value : b) {
+    result.size.push_back(std::abs(value));
+  }
   for_each_entry(A, system, [&](Eigen::Index row, Eigen::Index column, double value) {
     const auto i = static_cast<std::size_t>(row);
     const long double product = static_cast<long double>(value) * x[column];
@@ -72,7 +76,9 @@ Residual residual_of(const SparseMatrix& A, System system, const VectorView<doub
     result.size[i] += std::abs(product);
     row_sum[i] += std::abs(value);
   });
-  for (const long double sum_of_row : row_sum) result.norm = std::max(result.norm, sum_of_row);
+  for (const long double sum_of_row : row_sum) {
+    result.norm = std::max(result.norm, sum_of_row);
+  }
   return result;
 }
 
@@ -98,10 +104,14 @@ double alternating_bound(LinearSolver& solver, Eigen::Index n) {
 double normwise_backward_error(const SparseMatrix& A, System system, const VectorView<double>& x,
                                const VectorView<double>& b) {
   refuse_shapes("normwise_backward_error", A, x.size(), b.size());
-  if (!x.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  if (!x.allFinite()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   const Residual residual = residual_of(A, system, x, b);
   long double error = 0.0L;
-  for (const long double entry : residual.difference) error = std::max(error, std::abs(entry));
+  for (const long double entry : residual.difference) {
+    error = std::max(error, std::abs(entry));
+  }
   const long double size = residual.norm * x.lpNorm<Eigen::Infinity>();
   return quotient(error, size + b.lpNorm<Eigen::Infinity>());
 }
@@ -109,7 +119,9 @@ double normwise_backward_error(const SparseMatrix& A, System system, const Vecto
 double componentwise_backward_error(const SparseMatrix& A, System system,
                                     const VectorView<double>& x, const VectorView<double>& b) {
   refuse_shapes("componentwise_backward_error", A, x.size(), b.size());
-  if (!x.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  if (!x.allFinite()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   const Residual residual = residual_of(A, system, x, b);
   double worst = 0.0;
   for (std::size_t i = 0; i < residual.size.size(); ++i) {
@@ -128,16 +140,22 @@ Eigen::VectorXd refined_solution(LinearSolver& solver, const SparseMatrix& A,
   double largest = 0.0;
   // A step of 1e-30 is beyond the digits that x has; where x is exact, steps shrink for ever.
   while (last_step > 1e-30 * largest) {
-    for (std::size_t i = 0; i < x.size(); ++i) residual[i] = {b[static_cast<Eigen::Index>(i)], 0.0};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      residual[i] = {b[static_cast<Eigen::Index>(i)], 0.0};
+    }
     for_each_entry(A, System::kPlain, [&](Eigen::Index row, Eigen::Index column, double value) {
       residual[static_cast<std::size_t>(row)] +=
           product(-value, x[static_cast<std::size_t>(column)]);
     });
-    for (std::size_t i = 0; i < x.size(); ++i) step[static_cast<Eigen::Index>(i)] = residual[i].hi;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      step[static_cast<Eigen::Index>(i)] = residual[i].hi;
+    }
     solver.solve(step, step);
     // Steps shrink by the same factor each time, down to the rounding of twofold numbers.
     const double size = step.lpNorm<Eigen::Infinity>();
-    if (!(size < 0.5 * last_step)) break;
+    if (!(size < 0.5 * last_step)) {
+      break;
+    }
     last_step = size;
     largest = 0.0;
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -145,7 +163,9 @@ Eigen::VectorXd refined_solution(LinearSolver& solver, const SparseMatrix& A,
       largest = std::max(largest, std::abs(x[i].hi));
     }
   }
-  for (std::size_t i = 0; i < x.size(); ++i) step[static_cast<Eigen::Index>(i)] = x[i].hi;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    step[static_cast<Eigen::Index>(i)] = x[i].hi;
+  }
   return step;
 }
 
@@ -153,7 +173,9 @@ double estimate_condition(LinearSolver& solver, const SparseMatrix& A) {
   const Eigen::Index n = solver.size();
   refuse_shapes("estimate_condition", A, n, n);
   double norm = 0.0;
-  for (Eigen::Index j = 0; j < n; ++j) norm = std::max(norm, A.col(j).cwiseAbs().sum());
+  for (Eigen::Index j = 0; j < n; ++j) {
+    norm = std::max(norm, A.col(j).cwiseAbs().sum());
+  }
 
   // Ascent on the convex function ‖A⁻¹ x‖₁ over ‖x‖₁ ≤ 1, whose maximum is at a unit vector.
   Eigen::VectorXd x = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
@@ -163,12 +185,16 @@ double estimate_condition(LinearSolver& solver, const SparseMatrix& A) {
   for (int iteration = 0; iteration < 5; ++iteration) {
     solver.solve(x, y);
     const double reached = y.lpNorm<1>();
-    if (iteration > 0 && reached <= inverse_norm) break;
+    if (iteration > 0 && reached <= inverse_norm) {
+      break;
+    }
     inverse_norm = reached;
     slope = y.unaryExpr([](double value) { return value < 0.0 ? -1.0 : 1.0; });
     solver.solve_transposed(slope, slope);
     Eigen::Index steepest = 0;
-    if (slope.cwiseAbs().maxCoeff(&steepest) <= slope.dot(x)) break;
+    if (slope.cwiseAbs().maxCoeff(&steepest) <= slope.dot(x)) {
+      break;
+    }
     x.setZero();
     x[steepest] = 1.0;
   }

@@ -24,7 +24,9 @@ struct Band {
   for (int j = 0; j < A.cols(); ++j) {
     const int begin = A.outerIndexPtr()[j];
     const int end = A.outerIndexPtr()[j + 1];
-    if (begin == end) continue;
+    if (begin == end) {
+      continue;
+    }
     band.upper = std::max(band.upper, j - A.innerIndexPtr()[begin]);
     band.lower = std::max(band.lower, A.innerIndexPtr()[end - 1] - j);
   }
@@ -35,7 +37,9 @@ struct Band {
 /// @param bytes   that the factors would take
 /// @throws InvalidInput if these are more than kMaxBandBytes
 inline void refuse_wide_band(const std::string& solver, const SparseMatrix& A, double bytes) {
-  if (bytes <= kMaxBandBytes) return;
+  if (bytes <= kMaxBandBytes) {
+    return;
+  }
   throw InvalidInput(concat(solver, ": analyze: the band of the ", A.rows(), " x ", A.cols(),
                             " matrix would take ", bytes, " bytes; allowed: ", kMaxBandBytes,
                             "; use klu or umfpack for such a matrix"));

@@ -27,9 +27,13 @@ void factorize_panel(MatrixSpan panel, int* swaps) {
       panel.col(j).tail(rows - j).cwiseAbs().maxCoeff(&best);
       best += j;
       swaps[j] = static_cast<int>(best);
-      if (best != j) panel.row(j).swap(panel.row(best));
+      if (best != j) {
+        panel.row(j).swap(panel.row(best));
+      }
       // A pivot of zero has zeros below it, and is found when all is done.
-      if (panel(j, j) != 0.0) panel.col(j).tail(rows - j - 1) /= panel(j, j);
+      if (panel(j, j) != 0.0) {
+        panel.col(j).tail(rows - j - 1) /= panel(j, j);
+      }
       panel.bottomRightCorner(rows - j - 1, columns - j - 1).noalias() -=
           panel.col(j).tail(rows - j - 1) * panel.row(j).tail(columns - j - 1);
     }
@@ -40,7 +44,9 @@ void factorize_panel(MatrixSpan panel, int* swaps) {
   auto right = panel.rightCols(columns - half);
   factorize_panel(left, swaps);
   for (Eigen::Index j = 0; j < half; ++j) {
-    if (swaps[j] != j) right.row(j).swap(right.row(swaps[j]));
+    if (swaps[j] != j) {
+      right.row(j).swap(right.row(swaps[j]));
+    }
   }
   auto top = right.topRows(half);
   left.topRows(half).triangularView<Eigen::UnitLower>().solveInPlace(top);
@@ -49,7 +55,9 @@ void factorize_panel(MatrixSpan panel, int* swaps) {
   factorize_panel(bottom, swaps + half);
   for (Eigen::Index j = half; j < columns; ++j) {
     swaps[j] += static_cast<int>(half);
-    if (swaps[j] != j) left.row(j).swap(left.row(swaps[j]));
+    if (swaps[j] != j) {
+      left.row(j).swap(left.row(swaps[j]));
+    }
   }
 }
 
@@ -57,7 +65,9 @@ class BlockBanded final : public LinearSolver {
  public:
   explicit BlockBanded(std::vector<int> block_sizes) : block_sizes_(std::move(block_sizes)) {
     for (std::size_t b = 0; b < block_sizes_.size(); ++b) {
-      if (block_sizes_[b] > 0) continue;
+      if (block_sizes_[b] > 0) {
+        continue;
+      }
       throw InvalidInput(concat("block_banded: block ", b, " has size ", block_sizes_[b],
                                 "; expected a positive number"));
     }
@@ -120,7 +130,9 @@ void BlockBanded::place_blocks() {
   std::vector<int> sizes = block_sizes_;
   if (sizes.empty()) {
     const int block = std::clamp(band_of(matrix()).width() / 4, 4, 48);
-    for (int row = 0; row < size(); row += block) sizes.push_back(std::min(block, size() - row));
+    for (int row = 0; row < size(); row += block) {
+      sizes.push_back(std::min(block, size() - row));
+    }
   }
   columns_.assign(sizes.size(), {});
   int begin = 0;
@@ -198,7 +210,9 @@ template <typename Solutions>
 void BlockBanded::interchange(const Column& column, Solutions X, int first_row) const {
   for (int i = column.begin; i < column.end; ++i) {
     const int other = swaps_[static_cast<std::size_t>(i)];
-    if (other != i) X.row(i - first_row).swap(X.row(other - first_row));
+    if (other != i) {
+      X.row(i - first_row).swap(X.row(other - first_row));
+    }
   }
 }
 
@@ -206,7 +220,9 @@ void BlockBanded::interchange(const Column& column, Solutions X, int first_row) 
 void BlockBanded::eliminate(const Column& earlier, const Column& column, Panel panel) {
   interchange<Panel&>(earlier, panel, column.first_row);
   auto U = panel.middleRows(earlier.begin - column.first_row, earlier.size());
-  if ((U.array() == 0.0).all()) return;
+  if ((U.array() == 0.0).all()) {
+    return;
+  }
   const Panel factors = panel_of(earlier);
   const auto L = factors.middleRows(earlier.above(), earlier.size());
   L.triangularView<Eigen::UnitLower>().solveInPlace(U);
@@ -226,8 +242,12 @@ void BlockBanded::do_factorize() {
     const Column& column = columns_[b];
     Panel panel = panel_of(column);
     fill_panel(column, panel);
-    while (columns_[first].begin < column.first_row) ++first;
-    for (std::size_t k = first; k < b; ++k) eliminate(columns_[k], column, panel);
+    while (columns_[first].begin < column.first_row) {
+      ++first;
+    }
+    for (std::size_t k = first; k < b; ++k) {
+      eliminate(columns_[k], column, panel);
+    }
     int* swaps = swaps_.data() + column.begin;
     factorize_panel(panel.bottomRows(column.height() - column.above()), swaps);
     for (int i = 0; i < column.size(); ++i) {
@@ -253,7 +273,9 @@ void BlockBanded::substitute(Solutions& X) {
   for (const Column& column : columns_) {
     interchange<Solutions&>(column, X, 0);
     auto X_b = X.middleRows(column.begin, column.size());
-    if ((X_b.array() == 0.0).all()) continue;
+    if ((X_b.array() == 0.0).all()) {
+      continue;
+    }
     const Panel panel = panel_of(column);
     const int below = column.end_row - column.end;
     panel.middleRows(column.above(), column.size())
@@ -279,7 +301,9 @@ void BlockBanded::substitute_transposed(Solutions& X) {
     auto X_b = X.middleRows(column.begin, column.size());
     X_b.noalias() -=
         panel.topRows(column.above()).transpose() * X.middleRows(column.first_row, column.above());
-    if ((X_b.array() == 0.0).all()) continue;
+    if ((X_b.array() == 0.0).all()) {
+      continue;
+    }
     panel.middleRows(column.above(), column.size())
         .template triangularView<Eigen::Upper>()
         .transpose()
@@ -296,7 +320,9 @@ void BlockBanded::substitute_transposed(Solutions& X) {
         .solveInPlace(X_b);
     for (int i = column->end - 1; i >= column->begin; --i) {
       const int other = swaps_[static_cast<std::size_t>(i)];
-      if (other != i) X.row(i).swap(X.row(other));
+      if (other != i) {
+        X.row(i).swap(X.row(other));
+      }
     }
   }
   X = scale_.asDiagonal() * X;

@@ -33,7 +33,9 @@ FactorInfo BlockSubstitution::factor_info() const {
   info.bytes = 8.0 * info.entries + 4.0 * static_cast<double>(below_.size());
   info.flops = flops;
   // Blocks below the diagonal are used as they stand in the matrix.
-  for (int j = 0; j < size(); ++j) info.entries += below_block(j).count;
+  for (int j = 0; j < size(); ++j) {
+    info.entries += below_block(j).count;
+  }
   return info;
 }
 
@@ -89,7 +91,9 @@ BlockSubstitution::Panel BlockSubstitution::find_panel(int block, bool below) co
   const auto part = [&](int j) { return below ? below_block(j) : in_block(j); };
   const int begin = block_begin(block);
   const SparseColumn first = part(begin);
-  if (first.count == 0 || first.rows[first.count - 1] - first.rows[0] != first.count - 1) return {};
+  if (first.count == 0 || first.rows[first.count - 1] - first.rows[0] != first.count - 1) {
+    return {};
+  }
   const int* outer = matrix().outerIndexPtr();
   for (int j = begin + 1; j < begin + block_size(block); ++j) {
     const SparseColumn column = part(j);
@@ -110,7 +114,9 @@ BlockSubstitution::DenseView BlockSubstitution::dense_view(int block, const Pane
 }
 
 void BlockSubstitution::do_factorize() {
-  for (int b = 0; b < block_count(); ++b) factorize_block(b);
+  for (int b = 0; b < block_count(); ++b) {
+    factorize_block(b);
+  }
   std::fill(adopted_.begin(), adopted_.end(), 0);
 }
 
@@ -126,12 +132,16 @@ void BlockSubstitution::factorize_block(int block) {
       block_(A.innerIndexPtr()[k] - first, j) = A.valuePtr()[k];
     }
   }
-  if (adopted_[b] == 0) factors_[b].compute(block_);
+  if (adopted_[b] == 0) {
+    factors_[b].compute(block_);
+  }
   const auto& lu = factors_[b].matrixLU();
   for (int j = 0; j < size; ++j) {
     const double pivot = lu(j, j);
     // Written so that a pivot that is not a number is found, too.
-    if (std::abs(pivot) > kPivotFloor * block_.col(j).lpNorm<Eigen::Infinity>()) continue;
+    if (std::abs(pivot) > kPivotFloor * block_.col(j).lpNorm<Eigen::Infinity>()) {
+      continue;
+    }
     const auto& destination = factors_[b].permutationP().indices();
     const auto row = std::find(destination.begin(), destination.end(), j) - destination.begin();
     throw NumericalFailure(
@@ -170,18 +180,26 @@ void BlockSubstitution::substitute(System system, MatrixSpan X, Eigen::MatrixXd*
   const bool forward = system == System::kPlain;
   for (int i = 0; i < block_count(); ++i) {
     const int b = forward ? i : block_count() - 1 - i;
-    if (!forward) gather_below(b, X);
+    if (!forward) {
+      gather_below(b, X);
+    }
     auto X_b = X.middleRows(block_begin(b), block_size(b));
     if ((X_b.array() == 0.0).all()) {
-      if (R != nullptr) R->middleRows(block_begin(b), block_size(b)).setZero();
+      if (R != nullptr) {
+        R->middleRows(block_begin(b), block_size(b)).setZero();
+      }
       continue;
     }
-    if (R != nullptr) R->middleRows(block_begin(b), block_size(b)) = X_b;
+    if (R != nullptr) {
+      R->middleRows(block_begin(b), block_size(b)) = X_b;
+    }
     solve_block(b, system, X_b);
     if (R != nullptr) {
       subtract_diagonal(b, system, X_b, R->middleRows(block_begin(b), block_size(b)));
     }
-    if (forward) subtract_below(b, X);
+    if (forward) {
+      subtract_below(b, X);
+    }
   }
 }
 
@@ -196,7 +214,9 @@ void BlockSubstitution::solve_block(int block, System system, MatrixSpan X_b) {
   for (Eigen::Index r = 0; r < X_b.cols(); ++r) {
     auto x = X_b.col(r);
     if (system == System::kPlain) {
-      for (int i = 0; i < size; ++i) y[destination[i]] = x[i];
+      for (int i = 0; i < size; ++i) {
+        y[destination[i]] = x[i];
+      }
       lu.triangularView<Eigen::UnitLower>().solveInPlace(y);
       lu.triangularView<Eigen::Upper>().solveInPlace(y);
       x = y;
@@ -204,7 +224,9 @@ void BlockSubstitution::solve_block(int block, System system, MatrixSpan X_b) {
       y = x;
       lu.transpose().triangularView<Eigen::Lower>().solveInPlace(y);
       lu.transpose().triangularView<Eigen::UnitUpper>().solveInPlace(y);
-      for (int i = 0; i < size; ++i) x[i] = y[destination[i]];
+      for (int i = 0; i < size; ++i) {
+        x[i] = y[destination[i]];
+      }
     }
   }
 }
@@ -249,7 +271,9 @@ void BlockSubstitution::subtract_below(int block, MatrixSpan X) const {
   }
   for (Eigen::Index r = 0; r < X.cols(); ++r) {
     double* x = X.col(r).data();
-    for (int j = first; j < first + block_size(block); ++j) below_block(j).subtract_from(x, x[j]);
+    for (int j = first; j < first + block_size(block); ++j) {
+      below_block(j).subtract_from(x, x[j]);
+    }
   }
 }
 
@@ -265,7 +289,9 @@ void BlockSubstitution::gather_below(int block, MatrixSpan X) const {
   }
   for (Eigen::Index r = 0; r < X.cols(); ++r) {
     double* x = X.col(r).data();
-    for (int j = first; j < first + block_size(block); ++j) x[j] -= below_block(j).dot(x);
+    for (int j = first; j < first + block_size(block); ++j) {
+      x[j] -= below_block(j).dot(x);
+    }
   }
 }
 

@@ -41,7 +41,9 @@ struct Api<WideIndex> {
 /// Newer versions use OpenMP where they find it; a solver belongs to one thread.
 template <typename Common>
 void use_one_thread(Common& common) {
-  if constexpr (requires { common.nthreads_max; }) common.nthreads_max = 1;
+  if constexpr (requires { common.nthreads_max; }) {
+    common.nthreads_max = 1;
+  }
 }
 
 /// One matrix, its factor and what CHOLMOD needs to remember, freed together.
@@ -93,8 +95,12 @@ const char* name_of(Kind kind) {
 }
 
 Ordering resolved(Kind kind, Ordering ordering) {
-  if (ordering != Ordering::kDefault) return ordering;
-  if (kind == Kind::kLdlt) return Ordering::kNatural;
+  if (ordering != Ordering::kDefault) {
+    return ordering;
+  }
+  if (kind == Kind::kLdlt) {
+    return Ordering::kNatural;
+  }
   return kind == Kind::kNormal ? Ordering::kColamd : Ordering::kAmd;
 }
 
@@ -190,8 +196,12 @@ class Cholmod final : public LinearSolver {
     // The next call overwrites both.
     const int status = handle_.common.status;
     const std::size_t minor = handle_.factor->minor;
-    if (status < CHOLMOD_OK) throw_status("factorize", status);
-    if (minor < handle_.factor->n) refuse_pivot(minor, 0.0);
+    if (status < CHOLMOD_OK) {
+      throw_status("factorize", status);
+    }
+    if (minor < handle_.factor->n) {
+      refuse_pivot(minor, 0.0);
+    }
     read_pivots();
     refuse_unfit_pivots();
     read_info();
@@ -228,7 +238,9 @@ class Cholmod final : public LinearSolver {
       measure_rows();
       for (std::size_t k = 0; k < pivots_.size(); ++k) {
         const double whole = row_squares_[static_cast<std::size_t>(pivot_rows_[k])];
-        if (!(pivots_[k] > kPivotFloor * whole)) refuse_pivot(k, pivots_[k] / whole);
+        if (!(pivots_[k] > kPivotFloor * whole)) {
+          refuse_pivot(k, pivots_[k] / whole);
+        }
       }
       return;
     }
@@ -236,7 +248,9 @@ class Cholmod final : public LinearSolver {
       scaled_pivots_[k] = pivots_[k] / row_scale()[pivot_rows_[k]];
     }
     const int small = find_small_pivot(scaled_pivots_, pivot_rows_);
-    if (small < 0) return;
+    if (small < 0) {
+      return;
+    }
     const auto k = static_cast<std::size_t>(small);
     refuse_pivot(k, scaled_pivots_[k]);
   }
@@ -253,7 +267,9 @@ class Cholmod final : public LinearSolver {
 
   [[noreturn]] void refuse_pivot(std::size_t k, double pivot) const {
     const int row = pivot_rows_[k];
-    if (kind_ == Kind::kLdlt) throw_singular(row, row, pivot);
+    if (kind_ == Kind::kLdlt) {
+      throw_singular(row, row, pivot);
+    }
     const char* what = "is singular to working precision or not positive definite: ";
     const char* hint =
         "; look for an unknown without stiffness or inertia, or take cholmod_ldlt or klu";
@@ -271,14 +287,19 @@ class Cholmod final : public LinearSolver {
     info_.entries = static_cast<double>(factor.is_super != 0 ? factor.xsize : factor.nzmax);
     info_.bytes = static_cast<double>(handle_.common.memory_usage);
     info_.flops = flops_ + (kind_ == Kind::kNormal ? handle_.common.aatfl : 0.0);
-    if (kind_ == Kind::kNormal) return;  // whose pivots are those of A Aᵀ
+    if (kind_ == Kind::kNormal) {
+      return;  // whose pivots are those of A Aᵀ
+    }
     info_.inertia.emplace();
-    for (const double pivot : pivots_)
+    for (const double pivot : pivots_) {
       ++(pivot > 0.0 ? info_.inertia->positive : info_.inertia->negative);
+    }
   }
 
   void do_solve(System system, MatrixSpan X) override {
-    if (X.cols() == 0) return;
+    if (X.cols() == 0) {
+      return;
+    }
     if (kind_ != Kind::kNormal) {
       X = solve_by_factor(X);
     } else if (system == System::kPlain) {
@@ -296,12 +317,16 @@ class Cholmod final : public LinearSolver {
     const int ok =
         Api<Index>::kSolve(CHOLMOD_A, handle_.factor, &view, nullptr, &handle_.solution, nullptr,
                            &handle_.solve_work, &handle_.row_work, &handle_.common);
-    if (ok == 0) throw_status("solve", handle_.common.status);
+    if (ok == 0) {
+      throw_status("solve", handle_.common.status);
+    }
     return {static_cast<const double*>(handle_.solution->x), B.rows(), B.cols()};
   }
 
   [[noreturn]] void throw_status(const char* where, int status) const {
-    if (status == CHOLMOD_OUT_OF_MEMORY) throw_out_of_memory(where);
+    if (status == CHOLMOD_OUT_OF_MEMORY) {
+      throw_out_of_memory(where);
+    }
     const char* reason = "; its meaning is in cholmod.h";
     if (status == CHOLMOD_TOO_LARGE) {
       reason = " (more entries than the indices can count; take 64-bit indices)";

@@ -48,7 +48,9 @@ class Factors final : public Eigen::SparseLU<Eigen::SparseMatrix<double, 0, Inde
   [[nodiscard]] double pivot(Eigen::Index column) const {
     using Store = typename Factors::SCMatrix;
     for (typename Store::InnerIterator entry(this->m_Lstore, column); entry; ++entry) {
-      if (entry.index() == column) return entry.value();
+      if (entry.index() == column) {
+        return entry.value();
+      }
     }
     return 0.0;
   }
@@ -59,7 +61,9 @@ class EigenSparseLu final : public LinearSolver {
  public:
   [[nodiscard]] std::string name() const override { return "eigen_sparse_lu"; }
   [[nodiscard]] FactorInfo factor_info() const override {
-    if (!factorized_) return {};
+    if (!factorized_) {
+      return {};
+    }
     const double entries = static_cast<double>(lu_.nnzL() + lu_.nnzU());
     const double copies = 2.0 * static_cast<double>(scaled_.nonZeros());
     return {.entries = entries,
@@ -113,7 +117,9 @@ class EigenSparseLu final : public LinearSolver {
   }
 
   void do_solve(System system, MatrixSpan X) override {
-    if (X.cols() == 0) return;
+    if (X.cols() == 0) {
+      return;
+    }
     try {
       // Eigen's substitutions take columns to be contiguous to each other, which those of X need
       // not be.
@@ -165,8 +171,12 @@ std::unique_ptr<LinearSolver> make(IndexWidth width) {
 std::unique_ptr<LinearSolver> make_eigen_sparse_lu(const SolverOptions& options) {
   using enum Ordering;
   refuse_other_orderings("eigen_sparse_lu", options.ordering, {kDefault, kNatural, kAmd, kColamd});
-  if (options.ordering == kNatural) return make<Natural>(options.index_width);
-  if (options.ordering == kAmd) return make<Amd>(options.index_width);
+  if (options.ordering == kNatural) {
+    return make<Natural>(options.index_width);
+  }
+  if (options.ordering == kAmd) {
+    return make<Amd>(options.index_width);
+  }
   return make<Eigen::COLAMDOrdering>(options.index_width);
 }
 

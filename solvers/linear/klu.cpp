@@ -68,7 +68,9 @@ class Klu final : public LinearSolver {
 
   [[nodiscard]] std::string name() const override { return "klu"; }
   [[nodiscard]] FactorInfo factor_info() const override {
-    if (numeric_ == nullptr) return {};
+    if (numeric_ == nullptr) {
+      return {};
+    }
     typename Calls::Common common = common_;  // which KLU writes its count to
     Calls::kFlops(symbolic_, numeric_, &common);
     return {.entries = static_cast<double>(numeric_->lnz + numeric_->unz + numeric_->nzoff),
@@ -86,7 +88,9 @@ class Klu final : public LinearSolver {
     symbolic_ = natural_
                     ? Calls::kAnalyzeGiven(size(), columns(), rows(), nullptr, nullptr, &common_)
                     : Calls::kAnalyze(size(), columns(), rows(), &common_);
-    if (symbolic_ == nullptr) throw_status("analyze");
+    if (symbolic_ == nullptr) {
+      throw_status("analyze");
+    }
     pivot_columns_.resize(static_cast<std::size_t>(size()));
     suitesparse::narrow_indices(symbolic_->Q, pivot_columns_);
   }
@@ -102,7 +106,9 @@ class Klu final : public LinearSolver {
     if (common_.status == KLU_SINGULAR || numeric_ == nullptr) {
       const Index k = common_.numerical_rank;
       Calls::kFreeNumeric(&numeric_, &common_);
-      if (common_.status != KLU_SINGULAR) throw_status("factorize");
+      if (common_.status != KLU_SINGULAR) {
+        throw_status("factorize");
+      }
       throw_singular(k >= 0 && k < size() ? static_cast<int>(symbolic_->P[k]) : 0,
                      static_cast<int>(common_.singular_col), 0.0);
     }
@@ -131,13 +137,19 @@ class Klu final : public LinearSolver {
   void do_solve(System system, MatrixSpan X) override {
     const auto stride = static_cast<Index>(X.outerStride());
     const auto count = static_cast<Index>(X.cols());
-    if (count == 0) return;
+    if (count == 0) {
+      return;
+    }
     const auto solve = system == System::kPlain ? Calls::kSolve : Calls::kSolveTransposed;
-    if (solve(symbolic_, numeric_, stride, count, X.data(), &common_) == 0) throw_status("solve");
+    if (solve(symbolic_, numeric_, stride, count, X.data(), &common_) == 0) {
+      throw_status("solve");
+    }
   }
 
   [[noreturn]] void throw_status(const char* where) const {
-    if (common_.status == KLU_OUT_OF_MEMORY) throw_out_of_memory(where);
+    if (common_.status == KLU_OUT_OF_MEMORY) {
+      throw_out_of_memory(where);
+    }
     const char* reason = common_.status == KLU_TOO_LARGE
                              ? " (more entries than the indices can count; take 64-bit indices or "
                                "smaller blocks)"

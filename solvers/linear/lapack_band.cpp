@@ -59,8 +59,12 @@ class LapackBand final : public LinearSolver {
     int info = 0;
     dgbtrf_(&n, &n, &lower_, &upper_, band_.data(), &height_, swaps_.data(), &info);
     // A positive number says that a pivot is zero, which is found below.
-    if (info < 0) throw NumericalFailure(concat("lapack_band: factorize: dgbtrf returns ", info));
-    for (int j = 0; j < n; ++j) pivots_[static_cast<std::size_t>(j)] = band(lower_ + upper_, j);
+    if (info < 0) {
+      throw NumericalFailure(concat("lapack_band: factorize: dgbtrf returns ", info));
+    }
+    for (int j = 0; j < n; ++j) {
+      pivots_[static_cast<std::size_t>(j)] = band(lower_ + upper_, j);
+    }
     const int small = find_small_pivot(pivots_, column_of_);
     if (small >= 0) {
       throw_singular(row_of_pivot(small), small, pivots_[static_cast<std::size_t>(small)]);
@@ -71,14 +75,22 @@ class LapackBand final : public LinearSolver {
     const int n = size();
     const int count = static_cast<int>(X.cols());
     const int stride = static_cast<int>(X.outerStride());
-    if (count == 0) return;
-    if (system == System::kPlain) X = scale_.asDiagonal() * X;
+    if (count == 0) {
+      return;
+    }
+    if (system == System::kPlain) {
+      X = scale_.asDiagonal() * X;
+    }
     const char trans = system == System::kPlain ? 'N' : 'T';
     int info = 0;
     dgbtrs_(&trans, &n, &lower_, &upper_, &count, band_.data(), &height_, swaps_.data(), X.data(),
             &stride, &info, 1);
-    if (info != 0) throw NumericalFailure(concat("lapack_band: solve: dgbtrs returns ", info));
-    if (system == System::kTransposed) X = scale_.asDiagonal() * X;
+    if (info != 0) {
+      throw NumericalFailure(concat("lapack_band: solve: dgbtrs returns ", info));
+    }
+    if (system == System::kTransposed) {
+      X = scale_.asDiagonal() * X;
+    }
   }
 
   /// The matrix in LAPACK's layout, its rows scaled.

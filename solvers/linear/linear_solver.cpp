@@ -19,7 +19,9 @@ bool has_symmetric_pattern(const SparseMatrix& A) {
 }
 
 bool same_pattern(const SparseMatrix& A, const SparseMatrix& B) {
-  if (A.rows() != B.rows() || A.cols() != B.cols() || !A.isCompressed()) return false;
+  if (A.rows() != B.rows() || A.cols() != B.cols() || !A.isCompressed()) {
+    return false;
+  }
   return A.nonZeros() == B.nonZeros() &&
          std::equal(A.outerIndexPtr(), A.outerIndexPtr() + A.cols() + 1, B.outerIndexPtr()) &&
          std::equal(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros(), B.innerIndexPtr());
@@ -112,7 +114,9 @@ void LinearSolver::measure_matrix() {
   norm_one_ = 0.0;
   for (int j = 0; j < matrix_.cols(); ++j) {
     const double column_sum = whole_column(matrix_, j).measure(row_scale_.data(), row_sum_.data());
-    if (!std::isfinite(column_sum)) throw_not_finite(j);
+    if (!std::isfinite(column_sum)) {
+      throw_not_finite(j);
+    }
     norm_one_ = std::max(norm_one_, column_sum);
   }
   norm_inf_ = row_sum_.maxCoeff();
@@ -121,7 +125,9 @@ void LinearSolver::measure_matrix() {
 /// Names the entry of a column that is not finite; returns if there is none (their sum overflowed).
 void LinearSolver::throw_not_finite(int column) const {
   for (SparseMatrix::InnerIterator it(matrix_, column); it; ++it) {
-    if (std::isfinite(it.value())) continue;
+    if (std::isfinite(it.value())) {
+      continue;
+    }
     throw NumericalFailure(concat(name(), ": factorize: the entry in ",
                                   named("row", static_cast<int>(it.row())), ", ",
                                   named("column", column), " is ", it.value(),
@@ -138,7 +144,9 @@ void LinearSolver::measure_columns() {
     double largest = 0.0;
     for (int k = begin[j]; k < begin[j + 1]; ++k) {
       const double scale = row_scale_[rows[k]];
-      if (scale > 0.0) largest = std::max(largest, std::abs(values[k]) / scale);
+      if (scale > 0.0) {
+        largest = std::max(largest, std::abs(values[k]) / scale);
+      }
     }
     column_max_[j] = largest;
   }
@@ -148,7 +156,9 @@ int LinearSolver::find_small_pivot(std::span<const double> pivots, std::span<con
   measure_columns();
   for (std::size_t k = 0; k < pivots.size(); ++k) {
     // Written so that a pivot that is not a number is found, too.
-    if (!(std::abs(pivots[k]) > kPivotFloor * column_max_[columns[k]])) return static_cast<int>(k);
+    if (!(std::abs(pivots[k]) > kPivotFloor * column_max_[columns[k]])) {
+      return static_cast<int>(k);
+    }
   }
   return -1;
 }
@@ -190,7 +200,9 @@ void LinearSolver::solve(System system, const MatrixView& B, MatrixSpan X) {
   if (!B.allFinite()) {
     for (Eigen::Index j = 0; j < B.cols(); ++j) {
       for (Eigen::Index i = 0; i < B.rows(); ++i) {
-        if (std::isfinite(B(i, j))) continue;
+        if (std::isfinite(B(i, j))) {
+          continue;
+        }
         throw NumericalFailure(concat(name(), ": solve: row ", i, " of right-hand side ", j, " is ",
                                       B(i, j), "; check what it was computed from"));
       }
@@ -210,7 +222,9 @@ void LinearSolver::solve(System system, const MatrixView& B, MatrixSpan X) {
 
 void LinearSolver::solve_in_place(System system, MatrixSpan X) {
   has_residuals_ = do_solve_with_residuals(system, X, residuals_);
-  if (!has_residuals_) do_solve(system, X);
+  if (!has_residuals_) {
+    do_solve(system, X);
+  }
 }
 
 /// Leaves b − A x in residual_, and returns it scaled; not a number if x is not finite.
@@ -230,7 +244,9 @@ double LinearSolver::scaled_residual(System system, const VectorView<double>& b,
 
 double LinearSolver::scaled(System system, const VectorView<double>& residual,
                             const VectorView<double>& b, const VectorView<double>& x) const {
-  if (!x.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  if (!x.allFinite()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   const double norm = system == System::kPlain ? norm_inf_ : norm_one_;
   const double size = norm * x.lpNorm<Eigen::Infinity>() + b.lpNorm<Eigen::Infinity>();
   return size > 0.0 ? residual.lpNorm<Eigen::Infinity>() / size : 0.0;
@@ -243,7 +259,9 @@ void LinearSolver::check_solution(System system, const MatrixView& B, MatrixSpan
                                      : scaled_residual(system, B.col(j), X.col(j));
     if (residual > bounds_.refine_above) {
       ++statistics_.refinements;
-      if (has_residuals_) residual_ = residuals_.col(j);
+      if (has_residuals_) {
+        residual_ = residuals_.col(j);
+      }
     }
     for (int i = 0; i < bounds_.max_refinements && residual > bounds_.refine_above; ++i) {
       do_solve(system, residual_);
@@ -254,7 +272,9 @@ void LinearSolver::check_solution(System system, const MatrixView& B, MatrixSpan
         X.col(j) = refined_;
         residual = after;
       }
-      if (!(after < 0.5 * before)) break;
+      if (!(after < 0.5 * before)) {
+        break;
+      }
     }
     if (!(residual <= bounds_.refuse_above)) {
       throw NumericalFailure(

@@ -40,8 +40,12 @@ std::mutex& mumps_mutex() {
 int code_of(Ordering ordering) {
   using enum Ordering;
   refuse_other_orderings("mumps", ordering, {kDefault, kNatural, kAmd, kMetis});
-  if (ordering == kNatural) return 1;
-  if (ordering == kAmd) return 0;
+  if (ordering == kNatural) {
+    return 1;
+  }
+  if (ordering == kAmd) {
+    return 0;
+  }
   return ordering == kMetis ? 5 : 7;
 }
 
@@ -69,7 +73,9 @@ class Mumps final : public LinearSolver {
     id_.comm_fortran = kWorldCommunicator;
     call(kInitialize);
     is_open_ = id_.infog[0] >= 0;
-    if (!is_open_) throw_status("analyze");
+    if (!is_open_) {
+      throw_status("analyze");
+    }
     try {
       list_entries();
     } catch (const std::bad_alloc&) {
@@ -80,32 +86,50 @@ class Mumps final : public LinearSolver {
       const auto lock = suitesparse::lock_metis(Ordering::kMetis);  // MUMPS may choose it
       call(kAnalyze);
     }
-    if (id_.infog[0] < 0) throw_status("analyze");
+    if (id_.infog[0] < 0) {
+      throw_status("analyze");
+    }
   }
 
   void do_factorize() override {
-    for (std::size_t k = 0; k < from_.size(); ++k) values_[k] = matrix().valuePtr()[from_[k]];
+    for (std::size_t k = 0; k < from_.size(); ++k) {
+      values_[k] = matrix().valuePtr()[from_[k]];
+    }
     for (const int headroom : kHeadroom) {
       icntl(14) = headroom;
       call(kFactorize);
-      if (!wants_workspace()) break;
+      if (!wants_workspace()) {
+        break;
+      }
     }
     const int status = id_.infog[0];
-    if (status == -10) throw_rank(id_.infog[1]);
-    if (status < 0) throw_status("factorize");
-    if (id_.infog[27] > 0) throw_null_pivot(id_.pivnul_list[0] - 1);
-    if (is_definite_ && id_.infog[11] > 0) throw_indefinite();
+    if (status == -10) {
+      throw_rank(id_.infog[1]);
+    }
+    if (status < 0) {
+      throw_status("factorize");
+    }
+    if (id_.infog[27] > 0) {
+      throw_null_pivot(id_.pivnul_list[0] - 1);
+    }
+    if (is_definite_ && id_.infog[11] > 0) {
+      throw_indefinite();
+    }
     measure();
   }
 
   void do_solve(System system, MatrixSpan X) override {
-    if (X.cols() == 0) return;
+    if (X.cols() == 0) {
+      return;
+    }
     icntl(9) = system == System::kPlain ? 1 : 2;
     id_.rhs = X.data();
     id_.nrhs = static_cast<int>(X.cols());
     id_.lrhs = static_cast<int>(X.outerStride());
     call(kSolve);
-    if (id_.infog[0] < 0) throw_status("solve");
+    if (id_.infog[0] < 0) {
+      throw_status("solve");
+    }
   }
 
   void call(int job) {
@@ -115,7 +139,9 @@ class Mumps final : public LinearSolver {
   }
 
   void release() {
-    if (is_open_) call(kTerminate);
+    if (is_open_) {
+      call(kTerminate);
+    }
     is_open_ = false;
   }
 
@@ -127,7 +153,9 @@ class Mumps final : public LinearSolver {
     for (int j = 0; j < size(); ++j) {
       for (int k = matrix().outerIndexPtr()[j]; k < matrix().outerIndexPtr()[j + 1]; ++k) {
         const int row = matrix().innerIndexPtr()[k];
-        if (is_symmetric_ && row < j) continue;
+        if (is_symmetric_ && row < j) {
+          continue;
+        }
         rows_.push_back(row + 1);
         columns_.push_back(j + 1);
         from_.push_back(k);
@@ -139,7 +167,9 @@ class Mumps final : public LinearSolver {
   }
 
   void set_controls() {
-    for (int stream = 1; stream <= 3; ++stream) icntl(stream) = -1;
+    for (int stream = 1; stream <= 3; ++stream) {
+      icntl(stream) = -1;
+    }
     icntl(4) = 0;  // no messages
     // A matching of rows and columns is for matrices without a diagonal; by pattern alone.
     icntl(6) = !is_symmetric_ && !has_diagonal() ? 1 : 0;
@@ -148,7 +178,9 @@ class Mumps final : public LinearSolver {
     icntl(24) = 1;  // tell null pivots
     id_.cntl[2] = kPivotFloor;
     // The diagonal of a definite matrix will do; with 0 MUMPS would not tell null pivots, either.
-    if (is_definite_) id_.cntl[0] = 1e-10;
+    if (is_definite_) {
+      id_.cntl[0] = 1e-10;
+    }
     id_.n = size();
     id_.nnz = static_cast<MUMPS_INT8>(rows_.size());
     id_.irn = rows_.data();
@@ -159,7 +191,9 @@ class Mumps final : public LinearSolver {
 
   [[nodiscard]] bool has_diagonal() const {
     std::size_t found = 0;
-    for (std::size_t k = 0; k < rows_.size(); ++k) found += rows_[k] == columns_[k] ? 1 : 0;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      found += rows_[k] == columns_[k] ? 1 : 0;
+    }
     return found == static_cast<std::size_t>(size());
   }
 
@@ -206,7 +240,9 @@ class Mumps final : public LinearSolver {
     constexpr std::array<int, 4> kNoMemory = {-5, -7, -13, -19};
     const bool no_memory =
         std::find(kNoMemory.begin(), kNoMemory.end(), id_.infog[0]) != kNoMemory.end();
-    if (no_memory || wants_workspace()) throw_out_of_memory(where);
+    if (no_memory || wants_workspace()) {
+      throw_out_of_memory(where);
+    }
     throw NumericalFailure(concat("mumps: ", where, ": status ", id_.infog[0], ", ", id_.infog[1],
                                   "; its meaning is in MUMPS' manual under INFOG(1)"));
   }

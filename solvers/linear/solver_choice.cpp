@@ -85,7 +85,9 @@ std::vector<std::pair<bool, SolverChoice>> rules(const SolverOptions& options, c
 std::string objection(const SolverEntry& entry, const SolverOptions& options) {
   const auto list = [](const auto& offered) {
     std::string names;
-    for (const auto& one : offered) names += concat(names.empty() ? "" : ", ", name_of(one));
+    for (const auto& one : offered) {
+      names += concat(names.empty() ? "" : ", ", name_of(one));
+    }
     return names;
   };
   if (!entry.claims(options.structure)) {
@@ -110,18 +112,28 @@ std::string objection(const SolverEntry& entry, const SolverOptions& options) {
 SolverChoice choose_solver(const SolverOptions& options, const SparseMatrix& A) {
   const std::vector<SolverEntry> available = available_solvers();
   for (auto& [fits, choice] : rules(options, shape_of(options, A))) {
-    if (!fits) continue;
+    if (!fits) {
+      continue;
+    }
     const auto named = [&name = choice.name](const SolverEntry& entry) {
       return entry.name == name;
     };
     const auto entry = std::find_if(available.begin(), available.end(), named);
-    if (entry == available.end()) continue;
+    if (entry == available.end()) {
+      continue;
+    }
     // Whether a matrix is block triangular is seen, not believed.
     SolverOptions seen = options;
-    if (choice.name == "block_substitution") seen.structure = Structure::kBlockTriangular;
-    if (!objection(*entry, seen).empty()) continue;
+    if (choice.name == "block_substitution") {
+      seen.structure = Structure::kBlockTriangular;
+    }
+    if (!objection(*entry, seen).empty()) {
+      continue;
+    }
     SolverChoice chosen = choice;
-    if (options.ordering != Ordering::kDefault) chosen.ordering = options.ordering;
+    if (options.ordering != Ordering::kDefault) {
+      chosen.ordering = options.ordering;
+    }
     return chosen;
   }
   throw InvalidInput(concat("auto: no solver for structure \"", name_of(options.structure),
@@ -140,12 +152,16 @@ std::unique_ptr<LinearSolver> make_solver(std::string_view name, const SolverOpt
   }
   const SolverEntry& entry = find_solver(name);
   const std::string reason = objection(entry, options);
-  if (!reason.empty()) throw InvalidInput(concat("make_solver: ", reason));
+  if (!reason.empty()) {
+    throw InvalidInput(concat("make_solver: ", reason));
+  }
   return entry.make(options);
 }
 
 SolverFactory solver_factory(std::string_view name, Ordering ordering) {
-  if (name != "auto") static_cast<void>(find_solver(name));
+  if (name != "auto") {
+    static_cast<void>(find_solver(name));
+  }
   return [name = std::string(name), ordering](SolverOptions options, const SparseMatrix& A) {
     options.ordering = ordering;
     return make_solver(name, options, A);

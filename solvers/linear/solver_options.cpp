@@ -27,7 +27,9 @@ Ordering find_ordering(std::string_view name) {
   const auto place = std::find(kOrderings.begin(), kOrderings.end(), name);
   if (place == kOrderings.end()) {
     std::string known;
-    for (const std::string_view ordering : kOrderings) known += concat(' ', ordering);
+    for (const std::string_view ordering : kOrderings) {
+      known += concat(' ', ordering);
+    }
     throw InvalidInput(concat("there is no ordering \"", name, "\"; known:", known));
   }
   return static_cast<Ordering>(place - kOrderings.begin());
@@ -35,9 +37,13 @@ Ordering find_ordering(std::string_view name) {
 
 void refuse_other_orderings(std::string_view solver, Ordering ordering,
                             std::initializer_list<Ordering> offered) {
-  if (std::find(offered.begin(), offered.end(), ordering) != offered.end()) return;
+  if (std::find(offered.begin(), offered.end(), ordering) != offered.end()) {
+    return;
+  }
   std::string names;
-  for (const Ordering known : offered) names += concat(names.empty() ? "" : ", ", name_of(known));
+  for (const Ordering known : offered) {
+    names += concat(names.empty() ? "" : ", ", name_of(known));
+  }
   throw InvalidInput(concat(solver, ": the ordering \"", name_of(ordering),
                             "\" is not offered; offered: ", names));
 }

@@ -23,7 +23,9 @@ struct SparseColumn {
           factor * Eigen::Map<const Eigen::VectorXd>(values, count);
       return;
     }
-    for (int k = 0; k < count; ++k) y[rows[k]] -= values[k] * factor;
+    for (int k = 0; k < count; ++k) {
+      y[rows[k]] -= values[k] * factor;
+    }
   }
 
   /// Inner product of the column with a dense vector.
@@ -35,7 +37,9 @@ struct SparseColumn {
           .dot(Eigen::Map<const Eigen::VectorXd>(y + rows[0], count));
     }
     double sum = 0.0;
-    for (int k = 0; k < count; ++k) sum += values[k] * y[rows[k]];
+    for (int k = 0; k < count; ++k) {
+      sum += values[k] * y[rows[k]];
+    }
     return sum;
   }
 

@@ -16,7 +16,9 @@ template <typename Common>
 void use_one_thread(Common& common) {
   common.SPQR_grain = 1.0;
   common.SPQR_nthreads = 1;
-  if constexpr (requires { common.nthreads_max; }) common.nthreads_max = 1;
+  if constexpr (requires { common.nthreads_max; }) {
+    common.nthreads_max = 1;
+  }
 }
 
 int method_of(Ordering ordering) {
@@ -96,17 +98,25 @@ class Spqr final : public LinearSolver {
     const auto lock = suitesparse::lock_metis(ordering_);
     const int detect_rank = 1;
     qr_ = SuiteSparseQR_symbolic<double>(method_of(ordering_), detect_rank, &view_, &common_);
-    if (qr_ == nullptr || common_.status < CHOLMOD_OK) throw_status("analyze");
+    if (qr_ == nullptr || common_.status < CHOLMOD_OK) {
+      throw_status("analyze");
+    }
   }
 
   void do_factorize() override {
     info_ = {};
     // What was found to have a lower rank leaves a permutation behind that the next would keep.
-    if (qr_->Rmap != nullptr) do_analyze();
+    if (qr_->Rmap != nullptr) {
+      do_analyze();
+    }
     scale_values();
     const int ok = SuiteSparseQR_numeric<double>(kPivotFloor, &view_, qr_, &common_);
-    if (ok == 0 || common_.status < CHOLMOD_OK) throw_status("factorize");
-    if (qr_->rank < size()) refuse_dead_column();
+    if (ok == 0 || common_.status < CHOLMOD_OK) {
+      throw_status("factorize");
+    }
+    if (qr_->rank < size()) {
+      refuse_dead_column();
+    }
     info_.entries = static_cast<double>(common_.SPQR_istat[0]) +  // R
                     static_cast<double>(common_.SPQR_istat[1]);   // Householder vectors
     info_.bytes = static_cast<double>(common_.memory_usage);
@@ -114,8 +124,9 @@ class Spqr final : public LinearSolver {
   }
 
   void scale_values() {
-    for (int i = 0; i < size(); ++i)
+    for (int i = 0; i < size(); ++i) {
       row_factor_[i] = row_scale()[i] > 0.0 ? 1.0 / row_scale()[i] : 1.0;
+    }
     const int* begin = matrix().outerIndexPtr();
     const int* rows = matrix().innerIndexPtr();
     for (int j = 0; j < size(); ++j) {
@@ -132,7 +143,9 @@ class Spqr final : public LinearSolver {
 
   [[noreturn]] void refuse_dead_column() const {
     WideIndex k = 0;
-    while (qr_->QRnum->Rdead != nullptr && k + 1 < size() && qr_->QRnum->Rdead[k] == 0) ++k;
+    while (qr_->QRnum->Rdead != nullptr && k + 1 < size() && qr_->QRnum->Rdead[k] == 0) {
+      ++k;
+    }
     const WideIndex* order = qr_->QRsym->Qfill;
     const int column = static_cast<int>(order == nullptr ? k : order[k]);
     // QR has no pivot rows: the row to look at is the one that depends most on the unknown.
@@ -144,31 +157,43 @@ class Spqr final : public LinearSolver {
     };
     int largest = 0;
     for (int entry = 1; entry < count; ++entry) {
-      if (weight(entry) > weight(largest)) largest = entry;
+      if (weight(entry) > weight(largest)) {
+        largest = entry;
+      }
     }
     throw_singular(rows[largest], column, common_.SPQR_norm_E_fro);
   }
 
   void do_solve(System system, MatrixSpan X) override {
-    if (X.cols() == 0) return;
+    if (X.cols() == 0) {
+      return;
+    }
     if (system == System::kPlain) {
       rhs_ = row_factor_.asDiagonal() * X;
       cholmod_dense view = view_of(rhs_);
       const Dense rotated(SuiteSparseQR_qmult<double>(SPQR_QTX, qr_, &view, &common_), common_);
-      if (rotated.get() == nullptr) throw_status("solve");
+      if (rotated.get() == nullptr) {
+        throw_status("solve");
+      }
       const Dense solution(
           SuiteSparseQR_solve<double>(SPQR_RETX_EQUALS_B, qr_, rotated.get(), &common_), common_);
-      if (solution.get() == nullptr) throw_status("solve");
+      if (solution.get() == nullptr) {
+        throw_status("solve");
+      }
       X = column_factor_.asDiagonal() * solution.values();
     } else {
       rhs_ = column_factor_.asDiagonal() * X;
       cholmod_dense view = view_of(rhs_);
       const Dense rotated(SuiteSparseQR_solve<double>(SPQR_RTX_EQUALS_ETB, qr_, &view, &common_),
                           common_);
-      if (rotated.get() == nullptr) throw_status("solve");
+      if (rotated.get() == nullptr) {
+        throw_status("solve");
+      }
       const Dense solution(SuiteSparseQR_qmult<double>(SPQR_QX, qr_, rotated.get(), &common_),
                            common_);
-      if (solution.get() == nullptr) throw_status("solve");
+      if (solution.get() == nullptr) {
+        throw_status("solve");
+      }
       X = row_factor_.asDiagonal() * solution.values();
     }
   }
@@ -186,13 +211,17 @@ class Spqr final : public LinearSolver {
   }
 
   [[noreturn]] void throw_status(const char* where) const {
-    if (common_.status == CHOLMOD_OUT_OF_MEMORY) throw_out_of_memory(where);
+    if (common_.status == CHOLMOD_OUT_OF_MEMORY) {
+      throw_out_of_memory(where);
+    }
     throw NumericalFailure(
         concat("spqr: ", where, ": status ", common_.status, "; its meaning is in cholmod.h"));
   }
 
   void release() {
-    if (qr_ != nullptr) SuiteSparseQR_free<double>(&qr_, &common_);
+    if (qr_ != nullptr) {
+      SuiteSparseQR_free<double>(&qr_, &common_);
+    }
     qr_ = nullptr;
   }
 

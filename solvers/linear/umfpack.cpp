@@ -41,14 +41,22 @@ struct Api<WideIndex> {
 };
 
 int strategy_of(Ordering ordering) {
-  if (ordering == Ordering::kAmd) return UMFPACK_STRATEGY_SYMMETRIC;
-  if (ordering == Ordering::kColamd) return UMFPACK_STRATEGY_UNSYMMETRIC;
+  if (ordering == Ordering::kAmd) {
+    return UMFPACK_STRATEGY_SYMMETRIC;
+  }
+  if (ordering == Ordering::kColamd) {
+    return UMFPACK_STRATEGY_UNSYMMETRIC;
+  }
   return UMFPACK_STRATEGY_AUTO;
 }
 
 int method_of(Ordering ordering) {
-  if (ordering == Ordering::kNatural) return UMFPACK_ORDERING_NONE;
-  if (ordering == Ordering::kMetis) return UMFPACK_ORDERING_METIS;
+  if (ordering == Ordering::kNatural) {
+    return UMFPACK_ORDERING_NONE;
+  }
+  if (ordering == Ordering::kMetis) {
+    return UMFPACK_ORDERING_METIS;
+  }
   return UMFPACK_ORDERING_AMD;  // AMD or COLAMD, as the strategy has it
 }
 
@@ -69,7 +77,9 @@ class Umfpack final : public LinearSolver {
 
   [[nodiscard]] std::string name() const override { return "umfpack"; }
   [[nodiscard]] FactorInfo factor_info() const override {
-    if (numeric_ == nullptr) return {};
+    if (numeric_ == nullptr) {
+      return {};
+    }
     return {.entries = info_[UMFPACK_LNZ] + info_[UMFPACK_UNZ],
             .bytes = info_[UMFPACK_PEAK_MEMORY] * info_[UMFPACK_SIZE_OF_UNIT],
             .flops = info_[UMFPACK_FLOPS],
@@ -85,7 +95,9 @@ class Umfpack final : public LinearSolver {
       const auto lock = suitesparse::lock_metis(ordering_);
       const auto status = static_cast<int>(Api<Index>::kSymbolic(
           size(), size(), columns(), rows(), nullptr, &symbolic_, control_.data(), info_.data()));
-      if (status != UMFPACK_OK) throw_status("analyze", status);
+      if (status != UMFPACK_OK) {
+        throw_status("analyze", status);
+      }
     }
     integer_work_.resize(n);
     work_.resize(n);
@@ -98,7 +110,9 @@ class Umfpack final : public LinearSolver {
   }
 
   void do_factorize() override {
-    if (numeric_ != nullptr) Api<Index>::kFreeNumeric(&numeric_);
+    if (numeric_ != nullptr) {
+      Api<Index>::kFreeNumeric(&numeric_);
+    }
     const auto status =
         static_cast<int>(Api<Index>::kNumeric(columns(), rows(), matrix().valuePtr(), symbolic_,
                                               &numeric_, control_.data(), info_.data()));
@@ -109,7 +123,9 @@ class Umfpack final : public LinearSolver {
     const auto got = static_cast<int>(Api<Index>::kGetNumeric(
         nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, wide_rows_.data(),
         wide_columns_.data(), pivots_.data(), &reciprocal, nullptr, numeric_));
-    if (got != UMFPACK_OK) throw_status("factorize", got);
+    if (got != UMFPACK_OK) {
+      throw_status("factorize", got);
+    }
     suitesparse::narrow_indices(wide_rows_.data(), pivot_rows_);
     suitesparse::narrow_indices(wide_columns_.data(), pivot_columns_);
     const int small = find_small_pivot(pivots_, pivot_columns_);
@@ -117,7 +133,9 @@ class Umfpack final : public LinearSolver {
       const auto k = static_cast<std::size_t>(small);
       throw_singular(pivot_rows_[k], pivot_columns_[k], pivots_[k]);
     }
-    if (status != UMFPACK_OK) throw_status("factorize", status);
+    if (status != UMFPACK_OK) {
+      throw_status("factorize", status);
+    }
   }
 
   void do_solve(System system, MatrixSpan X) override {
@@ -126,13 +144,17 @@ class Umfpack final : public LinearSolver {
       const auto status = static_cast<int>(Api<Index>::kSolve(
           code, columns(), rows(), matrix().valuePtr(), solution_.data(), X.col(j).data(), numeric_,
           control_.data(), info_.data(), integer_work_.data(), work_.data()));
-      if (status != UMFPACK_OK) throw_status("solve", status);
+      if (status != UMFPACK_OK) {
+        throw_status("solve", status);
+      }
       X.col(j) = solution_;
     }
   }
 
   [[noreturn]] void throw_status(const char* where, int status) const {
-    if (status == UMFPACK_ERROR_out_of_memory) throw_out_of_memory(where);
+    if (status == UMFPACK_ERROR_out_of_memory) {
+      throw_out_of_memory(where);
+    }
     throw NumericalFailure(
         concat("umfpack: ", where, ": status ", status, "; its meaning is in umfpack.h"));
   }
@@ -141,8 +163,12 @@ class Umfpack final : public LinearSolver {
   [[nodiscard]] const Index* rows() const { return indices_.rows(); }
 
   void release() {
-    if (numeric_ != nullptr) Api<Index>::kFreeNumeric(&numeric_);
-    if (symbolic_ != nullptr) Api<Index>::kFreeSymbolic(&symbolic_);
+    if (numeric_ != nullptr) {
+      Api<Index>::kFreeNumeric(&numeric_);
+    }
+    if (symbolic_ != nullptr) {
+      Api<Index>::kFreeSymbolic(&symbolic_);
+    }
   }
 
   Ordering ordering_;

@@ -23,7 +23,9 @@ std::vector<Activity> activities(const Eigen::VectorXd& value, const Eigen::Vect
       // Where a range is narrower than the tolerance the nearer bound counts.
       const bool low = value[i] - lower[i] <= upper[i] - value[i];
       const double distance = low ? value[i] - lower[i] : upper[i] - value[i];
-      if (distance <= tolerance) activity = low ? Activity::kLower : Activity::kUpper;
+      if (distance <= tolerance) {
+        activity = low ? Activity::kLower : Activity::kUpper;
+      }
     }
     result.push_back(activity);
   }
@@ -40,7 +42,9 @@ struct ActiveJacobian {
 std::vector<int> places(const std::vector<Activity>& activity, bool active) {
   std::vector<int> result;
   for (std::size_t i = 0; i < activity.size(); ++i) {
-    if ((activity[i] != Activity::kInactive) == active) result.push_back(static_cast<int>(i));
+    if ((activity[i] != Activity::kInactive) == active) {
+      result.push_back(static_cast<int>(i));
+    }
   }
   return result;
 }
@@ -51,14 +55,18 @@ void fill(const SparsityPattern& pattern, const Eigen::VectorXd& values, ActiveJ
                        static_cast<Eigen::Index>(A.constraints.size()));
   Eigen::VectorXi row_of = Eigen::VectorXi::Constant(n, -1);
   Eigen::VectorXi column_of = Eigen::VectorXi::Constant(m, -1);
-  for (std::size_t k = 0; k < A.variables.size(); ++k) row_of[A.variables[k]] = static_cast<int>(k);
+  for (std::size_t k = 0; k < A.variables.size(); ++k) {
+    row_of[A.variables[k]] = static_cast<int>(k);
+  }
   for (std::size_t k = 0; k < A.constraints.size(); ++k) {
     column_of[A.constraints[k]] = static_cast<int>(k);
   }
   for (std::size_t k = 0; k < pattern.rows.size(); ++k) {
     const int column = column_of[pattern.rows[k]];
     const int row = row_of[pattern.columns[k]];
-    if (column >= 0 && row >= 0) A.transposed(row, column) += values[static_cast<Eigen::Index>(k)];
+    if (column >= 0 && row >= 0) {
+      A.transposed(row, column) += values[static_cast<Eigen::Index>(k)];
+    }
   }
 }
 
@@ -73,7 +81,9 @@ std::vector<Dependence> find_dependences(const Decomposition& qr, const std::vec
     Eigen::VectorXd weights = qr.matrixR().col(k).head(rank);
     qr.matrixR().topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solveInPlace(weights);
     for (Eigen::Index i = 0; i < rank; ++i) {
-      if (std::abs(weights[i]) <= kCoefficient * weights.lpNorm<Eigen::Infinity>()) continue;
+      if (std::abs(weights[i]) <= kCoefficient * weights.lpNorm<Eigen::Infinity>()) {
+        continue;
+      }
       dependence.others.push_back(of[static_cast<std::size_t>(order[i])]);
     }
     result.push_back(std::move(dependence));
@@ -116,7 +126,9 @@ MultiplierEstimate estimate_multipliers(ScaledNlp& program, const Eigen::VectorX
   MultiplierEstimate result;
   result.point = {x, Eigen::VectorXd::Zero(m), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   Eigen::VectorXd c(m);
-  if (!program.scaled_constraints(x, c)) program.throw_failure("multipliers");
+  if (!program.scaled_constraints(x, c)) {
+    program.throw_failure("multipliers");
+  }
   result.active = find_active_set(program, x, c, tolerance);
   ActiveJacobian A{
       places(result.active.constraints, true), places(result.active.variables, false), {}};
@@ -126,7 +138,9 @@ MultiplierEstimate estimate_multipliers(ScaledNlp& program, const Eigen::VectorX
   if (result.examined && entries > 0) {
     const SparsityPattern& pattern = program.jacobian_pattern();
     Eigen::VectorXd jacobian(static_cast<Eigen::Index>(pattern.rows.size()));
-    if (!program.scaled_jacobian(x, jacobian)) program.throw_failure("multipliers");
+    if (!program.scaled_jacobian(x, jacobian)) {
+      program.throw_failure("multipliers");
+    }
     fill(pattern, jacobian, A, n, m);
     Decomposition qr;
     qr.setThreshold(kDependent);
@@ -136,7 +150,9 @@ MultiplierEstimate estimate_multipliers(ScaledNlp& program, const Eigen::VectorX
     for (std::size_t k = 0; k < A.constraints.size(); ++k) {
       const double multiplier = multipliers[static_cast<Eigen::Index>(k)];
       const auto constraint = static_cast<std::size_t>(A.constraints[k]);
-      if (!right_sign(result.active.constraints[constraint], multiplier)) continue;
+      if (!right_sign(result.active.constraints[constraint], multiplier)) {
+        continue;
+      }
       result.point.constraint_multipliers[A.constraints[k]] = multiplier;
     }
     gradient = lagrangian_gradient(program, result.point);

@@ -23,14 +23,18 @@ void list_active(const Nlp& nlp, const ActiveSet& active, const PrimalDualPoint&
                  const Eigen::VectorXd& c, Diagnosis& d) {
   for (Eigen::Index i = 0; i < c.size(); ++i) {
     const Activity activity = active.constraints[static_cast<std::size_t>(i)];
-    if (activity == Activity::kInactive) continue;
+    if (activity == Activity::kInactive) {
+      continue;
+    }
     const double lambda = point.constraint_multipliers[i];
     d.constraints.push_back(active_bound(nlp.constraint_limits(), activity, i, c[i],
                                          activity == Activity::kLower ? -lambda : lambda));
   }
   for (Eigen::Index i = 0; i < point.x.size(); ++i) {
     const Activity activity = active.variables[static_cast<std::size_t>(i)];
-    if (activity == Activity::kInactive || activity == Activity::kEqual) continue;
+    if (activity == Activity::kInactive || activity == Activity::kEqual) {
+      continue;
+    }
     d.variables.push_back(active_bound(
         nlp.variables(), activity, i, point.x[i],
         activity == Activity::kLower ? point.lower_multipliers[i] : point.upper_multipliers[i]));
@@ -45,7 +49,9 @@ void advise(const Nlp& nlp, const DiagnosisOptions& options, const ActiveSet& ac
                               ", check its derivatives (check_gradients), or start elsewhere"));
   }
   for (const DependentConstraint& constraint : d.dependent) {
-    if (d.advice.size() >= kShown) break;
+    if (d.advice.size() >= kShown) {
+      break;
+    }
     if (constraint.others.empty()) {
       d.advice.push_back(concat("no free variable moves ", constraint.name,
                                 " here: free one that does, or remove the constraint"));
@@ -55,7 +61,9 @@ void advise(const Nlp& nlp, const DiagnosisOptions& options, const ActiveSet& ac
   }
   const bool any_free = std::find(active.variables.begin(), active.variables.end(),
                                   Activity::kInactive) != active.variables.end();
-  if (!any_free) d.advice.emplace_back("every variable is on a bound: widen some");
+  if (!any_free) {
+    d.advice.emplace_back("every variable is on a bound: widen some");
+  }
   if (d.stationarity > options.optimality_tolerance) {
     d.advice.push_back(concat("the gradient by ", d.least_stationary,
                               " is not balanced: optimise further from here, check the ",
@@ -80,12 +88,16 @@ const char* words(Activity activity) {
 
 /// "2 active constraints:" and a line for each of the most important.
 std::string list_in_words(const char* title, std::vector<ActiveBound> bounds) {
-  if (bounds.empty()) return concat("no ", title, "\n");
+  if (bounds.empty()) {
+    return concat("no ", title, "\n");
+  }
   // Bounds before equations, which hold anyway.
   std::stable_sort(bounds.begin(), bounds.end(), [](const ActiveBound& a, const ActiveBound& b) {
     const bool a_last = a.activity == Activity::kEqual;
     const bool b_last = b.activity == Activity::kEqual;
-    if (a_last != b_last) return b_last;
+    if (a_last != b_last) {
+      return b_last;
+    }
     return std::abs(a.multiplier) > std::abs(b.multiplier);
   });
   std::string result = concat(bounds.size(), " ", title, ":\n");
@@ -94,7 +106,9 @@ std::string list_in_words(const char* title, std::vector<ActiveBound> bounds) {
     result += concat("  ", b.name, " = ", b.value, ", ", words(b.activity), " ", b.bound,
                      ", multiplier ", b.multiplier, "\n");
   }
-  if (bounds.size() > kShown) result += concat("  and ", bounds.size() - kShown, " more\n");
+  if (bounds.size() > kShown) {
+    result += concat("  and ", bounds.size() - kShown, " more\n");
+  }
   return result;
 }
 
@@ -114,14 +128,20 @@ Diagnosis diagnose_point(Nlp& nlp, const PrimalDualPoint& point, const std::stri
   const Eigen::VectorXd gap = lagrangian_gradient(program, chosen).cwiseAbs();
   Eigen::Index worst = 0;
   d.stationarity = gap.maxCoeff(&worst);
-  if (d.stationarity > 0.0) d.least_stationary = name_at(nlp.variables().names, worst);
+  if (d.stationarity > 0.0) {
+    d.least_stationary = name_at(nlp.variables().names, worst);
+  }
 
   const PrimalDualPoint unscaled = program.unscaled(chosen);
   const double* f = program.evaluator().objective(unscaled.x);
-  if (f == nullptr) program.throw_failure("diagnosis");
+  if (f == nullptr) {
+    program.throw_failure("diagnosis");
+  }
   d.objective = *f;
   const Eigen::VectorXd* c = program.evaluator().constraints(unscaled.x);
-  if (c == nullptr) program.throw_failure("diagnosis");
+  if (c == nullptr) {
+    program.throw_failure("diagnosis");
+  }
   d.violation = largest_violation(nlp, point.x, *c);
   list_active(nlp, estimate.active, unscaled, *c, d);
 
@@ -129,7 +149,9 @@ Diagnosis diagnose_point(Nlp& nlp, const PrimalDualPoint& point, const std::stri
   const std::vector<std::string>& names = nlp.constraint_limits().names;
   for (const Dependence& dependence : estimate.dependences) {
     DependentConstraint constraint{name_at(names, dependence.constraint), {}};
-    for (const int other : dependence.others) constraint.others.push_back(name_at(names, other));
+    for (const int other : dependence.others) {
+      constraint.others.push_back(name_at(names, other));
+    }
     d.dependent.push_back(std::move(constraint));
   }
   advise(nlp, options, estimate.active, d);
@@ -139,7 +161,9 @@ Diagnosis diagnose_point(Nlp& nlp, const PrimalDualPoint& point, const std::stri
 std::string Diagnosis::text() const {
   std::string result = outcome.empty() ? "" : outcome + "\n";
   result += concat("objective ", objective, ", gradient of the Lagrangian ", stationarity);
-  if (!least_stationary.empty()) result += concat(" (by ", least_stationary, ")");
+  if (!least_stationary.empty()) {
+    result += concat(" (by ", least_stationary, ")");
+  }
   result += "\n";
   if (violation.amount > 0.0) {
     result += concat("worst violation: ", violation.name, " by ", violation.amount, "\n");
@@ -148,14 +172,20 @@ std::string Diagnosis::text() const {
   }
   result += list_in_words("active constraints", constraints);
   result += list_in_words("variables on a bound", variables);
-  if (!dependences_known) result += "too many active constraints to look for dependent ones\n";
+  if (!dependences_known) {
+    result += "too many active constraints to look for dependent ones\n";
+  }
   for (std::size_t k = 0; k < std::min(dependent.size(), kShown); ++k) {
     result += concat(dependent[k].name,
                      dependent[k].others.empty() ? " is moved by no free variable" : " depends on");
-    for (const std::string& other : dependent[k].others) result += " " + other;
+    for (const std::string& other : dependent[k].others) {
+      result += " " + other;
+    }
     result += "\n";
   }
-  for (const std::string& what : advice) result += concat("try: ", what, "\n");
+  for (const std::string& what : advice) {
+    result += concat("try: ", what, "\n");
+  }
   return result;
 }
 

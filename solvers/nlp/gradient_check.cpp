@@ -30,7 +30,9 @@ class Outputs {
     derivative_.row(0) = gradient.transpose();
     const SparsityPattern& pattern = nlp.jacobian_pattern();
     Eigen::VectorXd entries = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(pattern.rows.size()));
-    if (value_.size() > 1) nlp.constraint_jacobian(x, entries);
+    if (value_.size() > 1) {
+      nlp.constraint_jacobian(x, entries);
+    }
     for (std::size_t k = 0; k < pattern.rows.size(); ++k) {
       derivative_(pattern.rows[k] + 1, pattern.columns[k]) += entries[static_cast<Eigen::Index>(k)];
     }
@@ -53,7 +55,9 @@ class Outputs {
   [[nodiscard]] std::optional<Eigen::VectorXd> at_step(const Eigen::VectorXd& d) {
     try {
       Eigen::VectorXd result = value(x_ + d);
-      if (result.allFinite()) return result;
+      if (result.allFinite()) {
+        return result;
+      }
     } catch (const EvaluationError&) {
       // Left out: the caller goes on with the other steps.
     }
@@ -66,7 +70,9 @@ class Outputs {
     Eigen::VectorXd c = Eigen::VectorXd::Zero(m);
     Eigen::VectorXd result(m + 1);
     result[0] = nlp_.objective(x);
-    if (m > 0) nlp_.constraints(x, c);
+    if (m > 0) {
+      nlp_.constraints(x, c);
+    }
     result.tail(m) = c;
     return result;
   }
@@ -87,7 +93,9 @@ void check_differences(Outputs& F, const Eigen::VectorXd& d, const std::string& 
   for (const double step : kDifferenceSteps) {
     const auto above = F.at_step(step * d);
     const auto below = F.at_step(-step * d);
-    if (!above || !below) continue;
+    if (!above || !below) {
+      continue;
+    }
     any_step = true;
     for (Eigen::Index i = 0; i < F.size(); ++i) {
       const double difference = ((*above)[i] - (*below)[i]) / (2.0 * step);
@@ -101,8 +109,12 @@ void check_differences(Outputs& F, const Eigen::VectorXd& d, const std::string& 
     throw EvaluationError(concat("check_gradients: no step ", where, " can be evaluated"));
   }
   for (Eigen::Index i = 0; i < F.size(); ++i) {
-    if (std::isnan(slope[i])) gap[i] = std::numeric_limits<double>::infinity();
-    if (gap[i] <= report.gap) continue;
+    if (std::isnan(slope[i])) {
+      gap[i] = std::numeric_limits<double>::infinity();
+    }
+    if (gap[i] <= report.gap) {
+      continue;
+    }
     report.gap = gap[i];
     report.gap_name = concat(F.name(i), " ", where);
   }
@@ -119,7 +131,9 @@ void check_remainder(Outputs& F, const Eigen::VectorXd& d, const std::string& wh
   double previous_step = 0.0;
   for (const double step : kTaylorSteps) {
     const auto value = F.at_step(step * d);
-    if (!value) continue;
+    if (!value) {
+      continue;
+    }
     const Eigen::VectorXd remainder = (*value - F.value() - step * slope).cwiseAbs();
     for (Eigen::Index i = 0; i < F.size() && previous_step > 0.0; ++i) {
       const double rounding = kValueRounding * (std::abs(F.value()[i]) + step * F.steepness(i));
@@ -131,7 +145,9 @@ void check_remainder(Outputs& F, const Eigen::VectorXd& d, const std::string& wh
     previous_step = step;
   }
   for (Eigen::Index i = 0; i < F.size(); ++i) {
-    if (order[i] >= report.slope) continue;
+    if (order[i] >= report.slope) {
+      continue;
+    }
     report.slope = order[i];
     report.slope_name = concat(F.name(i), " ", where);
   }
@@ -148,7 +164,9 @@ GradientCheck check_gradients(Nlp& nlp, const Eigen::VectorXd& x,
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (int k = 0; k < options.directions; ++k) {
     Eigen::VectorXd d = F.scale();
-    for (double& entry : d) entry *= uniform(engine);
+    for (double& entry : d) {
+      entry *= uniform(engine);
+    }
     const std::string where = concat("along direction ", k);
     check_differences(F, d, where, report);
     check_remainder(F, d, where, report);

@@ -27,8 +27,12 @@ class Lagrangian {
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     sigma_ = 1.0 + 0.5 * uniform(engine);
     lambda_.resize(limits.lower.size());
-    for (double& multiplier : lambda_) multiplier = uniform(engine);
-    if (limits.scale.size() > 0) lambda_ = lambda_.cwiseQuotient(limits.scale);
+    for (double& multiplier : lambda_) {
+      multiplier = uniform(engine);
+    }
+    if (limits.scale.size() > 0) {
+      lambda_ = lambda_.cwiseQuotient(limits.scale);
+    }
     read_hessian();
     value_ = value(x);
     gradient_ = gradient(x);
@@ -49,7 +53,9 @@ class Lagrangian {
   [[nodiscard]] std::optional<Eigen::VectorXd> gradient_at(const Eigen::VectorXd& d) {
     try {
       Eigen::VectorXd result = gradient(x_ + d);
-      if (result.allFinite()) return result;
+      if (result.allFinite()) {
+        return result;
+      }
     } catch (const EvaluationError&) {
       // Left out: the caller goes on with the other steps.
     }
@@ -61,7 +67,9 @@ class Lagrangian {
     try {
       const double gap =
           std::abs(value(x_ + d) - value_ - gradient_.dot(d) - 0.5 * d.dot(product(d)));
-      if (std::isfinite(gap)) return gap;
+      if (std::isfinite(gap)) {
+        return gap;
+      }
     } catch (const EvaluationError&) {
       // As above.
     }
@@ -78,7 +86,9 @@ class Lagrangian {
       const int row = pattern.rows[k];
       const int column = pattern.columns[k];
       hessian_(row, column) += entries[static_cast<Eigen::Index>(k)];
-      if (row != column) hessian_(column, row) += entries[static_cast<Eigen::Index>(k)];
+      if (row != column) {
+        hessian_(column, row) += entries[static_cast<Eigen::Index>(k)];
+      }
     }
   }
 
@@ -86,7 +96,9 @@ class Lagrangian {
   double value(const Eigen::VectorXd& x) {
     Eigen::VectorXd c = Eigen::VectorXd::Zero(lambda_.size());
     const double f = sigma_ * nlp_.objective(x);
-    if (c.size() > 0) nlp_.constraints(x, c);
+    if (c.size() > 0) {
+      nlp_.constraints(x, c);
+    }
     size_ = std::abs(f) + lambda_.cwiseProduct(c).lpNorm<1>();
     return f + lambda_.dot(c);
   }
@@ -97,7 +109,9 @@ class Lagrangian {
     result *= sigma_;
     const SparsityPattern& pattern = nlp_.jacobian_pattern();
     Eigen::VectorXd entries = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(pattern.rows.size()));
-    if (lambda_.size() > 0) nlp_.constraint_jacobian(x, entries);
+    if (lambda_.size() > 0) {
+      nlp_.constraint_jacobian(x, entries);
+    }
     for (std::size_t k = 0; k < pattern.rows.size(); ++k) {
       result[pattern.columns[k]] +=
           entries[static_cast<Eigen::Index>(k)] * lambda_[pattern.rows[k]];
@@ -125,7 +139,9 @@ void check_products(Lagrangian& L, const Eigen::VectorXd& d, const std::string& 
   for (const double step : kGradientSteps) {
     const auto above = L.gradient_at(step * d);
     const auto below = L.gradient_at(-step * d);
-    if (!above || !below) continue;
+    if (!above || !below) {
+      continue;
+    }
     any_step = true;
     // An entry may be what is left of larger terms: rounding is measured by the whole gradient.
     const double size = above->cwiseProduct(L.scale()).lpNorm<Eigen::Infinity>();
@@ -141,7 +157,9 @@ void check_products(Lagrangian& L, const Eigen::VectorXd& d, const std::string& 
     throw EvaluationError(concat("check_hessian: no step ", where, " can be evaluated"));
   }
   for (Eigen::Index i = 0; i < d.size(); ++i) {
-    if (gap[i] <= report.gap) continue;
+    if (gap[i] <= report.gap) {
+      continue;
+    }
     report.gap = gap[i];
     report.gap_name = concat(names[static_cast<std::size_t>(i)], " ", where);
   }
@@ -155,14 +173,18 @@ void check_model(Lagrangian& L, const Eigen::VectorXd& d, const std::string& nam
   double previous_step = 0.0;
   for (const double step : kModelSteps) {
     const auto remainder = L.remainder(step * d);
-    if (!remainder) continue;
+    if (!remainder) {
+      continue;
+    }
     if (previous_step > 0.0 && *remainder > 100.0 * kRounding * L.size()) {
       order = std::log(previous / *remainder) / std::log(previous_step / step);
     }
     previous = *remainder;
     previous_step = step;
   }
-  if (order >= report.slope) return;
+  if (order >= report.slope) {
+    return;
+  }
   report.slope = order;
   report.slope_name = name;
 }
@@ -180,7 +202,9 @@ HessianCheck check_hessian(Nlp& nlp, const Eigen::VectorXd& x,
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (int k = 0; k < options.directions; ++k) {
     Eigen::VectorXd d = L.scale();
-    for (double& entry : d) entry *= uniform(engine);
+    for (double& entry : d) {
+      entry *= uniform(engine);
+    }
     check_products(L, d, concat("along direction ", k), names, report);
     check_model(L, d, concat("direction ", k), report);
   }

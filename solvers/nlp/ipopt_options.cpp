@@ -35,7 +35,9 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 Option find_option(Ipopt::IpoptApplication& application, const std::string& name) {
   const Ipopt::SmartPtr<Ipopt::RegisteredOptions> known = application.RegOptions();
   Option option = known->GetOption(name);
-  if (Ipopt::IsValid(option)) return option;
+  if (Ipopt::IsValid(option)) {
+    return option;
+  }
   std::string nearest;
   for (const auto& [other, unused] : known->RegisteredOptionsList()) {
     if (nearest.empty() || edit_distance(name, other) < edit_distance(name, nearest)) {
@@ -94,7 +96,9 @@ void refuse_decided_elsewhere(const std::string& name) {
        {"print_level", "print_level"},
        {"warm_start_init_point", "warm_start"}}};
   for (const auto& [option, member] : kDecided) {
-    if (name != option) continue;
+    if (name != option) {
+      continue;
+    }
     throw InvalidInput(concat("ipopt: option \"", name, "\" is decided by IpoptOptions::", member));
   }
 }
@@ -158,7 +162,9 @@ void set_ipopt_options(Ipopt::IpoptApplication& application, const IpoptOptions&
   if (options.hessian == HessianKind::kLimitedMemory) {
     set_option(application, "hessian_approximation", std::string("limited-memory"));
   }
-  if (options.warm_start) set_warm_start(application, options.warm_start->mu);
+  if (options.warm_start) {
+    set_warm_start(application, options.warm_start->mu);
+  }
   set_all(application, options.string_options);
   set_all(application, options.number_options);
   set_all(application, options.integer_options);

@@ -76,7 +76,9 @@ class Adapter final : public Ipopt::TNLP {
     const auto bounded = [](const Eigen::VectorXd& v) { return v.cwiseMax(-1e20).cwiseMin(1e20); };
     Output(x_l, n()) = bounded(program_.scaled_lower());
     Output(x_u, n()) = bounded(program_.scaled_upper());
-    if (m() == 0) return true;
+    if (m() == 0) {
+      return true;
+    }
     Output(g_l, m()) = bounded(program_.scaled_constraint_lower());
     Output(g_u, m()) = bounded(program_.scaled_constraint_upper());
     return true;
@@ -84,10 +86,18 @@ class Adapter final : public Ipopt::TNLP {
 
   bool get_starting_point(Index, bool init_x, Number* x, bool init_z, Number* z_L, Number* z_U,
                           Index, bool init_lambda, Number* lambda) override {
-    if (init_x) Output(x, n()) = start_.x;
-    if (init_z) Output(z_L, n()) = start_.lower_multipliers;
-    if (init_z) Output(z_U, n()) = start_.upper_multipliers;
-    if (init_lambda && m() > 0) Output(lambda, m()) = start_.constraint_multipliers;
+    if (init_x) {
+      Output(x, n()) = start_.x;
+    }
+    if (init_z) {
+      Output(z_L, n()) = start_.lower_multipliers;
+    }
+    if (init_z) {
+      Output(z_U, n()) = start_.upper_multipliers;
+    }
+    if (init_lambda && m() > 0) {
+      Output(lambda, m()) = start_.constraint_multipliers;
+    }
     return true;
   }
 
@@ -105,14 +115,20 @@ class Adapter final : public Ipopt::TNLP {
 
   bool eval_jac_g(Index, const Number* x, bool, Index, Index entries, Index* rows, Index* columns,
                   Number* values) override {
-    if (values == nullptr) return copy_pattern(program_.jacobian_pattern(), rows, columns);
+    if (values == nullptr) {
+      return copy_pattern(program_.jacobian_pattern(), rows, columns);
+    }
     return !must_stop() && program_.scaled_jacobian(Vector(x, n()), Output(values, entries));
   }
 
   bool eval_h(Index, const Number* x, bool, Number sigma, Index, const Number* lambda, bool,
               Index entries, Index* rows, Index* columns, Number* values) override {
-    if (options_.hessian == HessianKind::kLimitedMemory) return false;
-    if (values == nullptr) return copy_pattern(program_.hessian_pattern(), rows, columns);
+    if (options_.hessian == HessianKind::kLimitedMemory) {
+      return false;
+    }
+    if (values == nullptr) {
+      return copy_pattern(program_.hessian_pattern(), rows, columns);
+    }
     return !must_stop() && program_.scaled_hessian(Vector(x, n()), sigma, Vector(lambda, m()),
                                                    Output(values, entries));
   }
@@ -123,14 +139,20 @@ class Adapter final : public Ipopt::TNLP {
                              const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
     result_.iterations = iteration;
     result_.mu = mu;
-    if (must_stop()) return false;
-    if (!options_.on_iteration) return true;
+    if (must_stop()) {
+      return false;
+    }
+    if (!options_.on_iteration) {
+      return true;
+    }
     try {
       const bool restoring = mode == Ipopt::RestorationPhaseMode;
       const bool go_on = options_.on_iteration(
           {iteration, restoring, objective * program_.objective_scale(), inf_pr, inf_du, mu, d_norm,
            alpha_primal, regularization, trials, elapsed()});
-      if (!go_on) stopped_ = IpoptStatus::kStopped;
+      if (!go_on) {
+        stopped_ = IpoptStatus::kStopped;
+      }
     } catch (...) {
       exception_ = std::current_exception();
     }
@@ -143,7 +165,9 @@ class Adapter final : public Ipopt::TNLP {
     last_.x = Vector(x, n());
     last_.lower_multipliers = Vector(z_L, n());
     last_.upper_multipliers = Vector(z_U, n());
-    if (m() > 0) last_.constraint_multipliers = Vector(lambda, m());
+    if (m() > 0) {
+      last_.constraint_multipliers = Vector(lambda, m());
+    }
     finished_ = true;
   }
 
@@ -169,8 +193,12 @@ class Adapter final : public Ipopt::TNLP {
 
   /// Whether the run is over; also asked between evaluations, since one may take long.
   bool must_stop() {
-    if (exception() != nullptr) return true;
-    if (stopped_ || !program_.evaluator().best().found) return stopped_.has_value();
+    if (exception() != nullptr) {
+      return true;
+    }
+    if (stopped_ || !program_.evaluator().best().found) {
+      return stopped_.has_value();
+    }
     if (options_.stop != nullptr && options_.stop->load()) {
       stopped_ = IpoptStatus::kInterrupted;
     } else if (elapsed() > options_.max_wall_time) {
@@ -223,7 +251,9 @@ IpoptResult Adapter::take_result(IpoptStatus status, Nlp& nlp) {
   if (best.found) {
     r.message += concat(r.feasible ? "feasible" : "infeasible", ", objective ", r.objective,
                         ", largest violation ", r.violation.amount);
-    if (r.violation.amount > 0.0) r.message += concat(" (", r.violation.name, ")");
+    if (r.violation.amount > 0.0) {
+      r.message += concat(" (", r.violation.name, ")");
+    }
   } else {
     r.message += "no point could be evaluated";
   }
@@ -231,7 +261,9 @@ IpoptResult Adapter::take_result(IpoptStatus status, Nlp& nlp) {
     r.message += concat("; ", r.evaluations.failures,
                         " evaluations failed, the last with: ", evaluator.last_failure());
   }
-  if (!advice(r.status).empty()) r.message += concat("; ", advice(r.status));
+  if (!advice(r.status).empty()) {
+    r.message += concat("; ", advice(r.status));
+  }
   return r;
 }
 
@@ -312,7 +344,9 @@ IpoptResult run_ipopt(Nlp& nlp, const IpoptOptions& options, std::ostream* journ
   }
   const auto adapter = make_counted<Adapter>(nlp, options);
   status = application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(adapter)));
-  if (adapter->exception() != nullptr) std::rethrow_exception(adapter->exception());
+  if (adapter->exception() != nullptr) {
+    std::rethrow_exception(adapter->exception());
+  }
   return adapter->take_result(translate(status), nlp);
 }
 

@@ -97,9 +97,15 @@ class NloptRun {
 
 /// A value above all seen: a line search takes it as "too far".
 double NloptRun::failure() {
-  if (program_.evaluator().exception() != nullptr) exception_ = program_.evaluator().exception();
-  if (!worst_ && !stopped_) stopped_ = NloptStatus::kEvaluationFailed;
-  if (must_stop()) nlopt_force_stop(handle_.get());
+  if (program_.evaluator().exception() != nullptr) {
+    exception_ = program_.evaluator().exception();
+  }
+  if (!worst_ && !stopped_) {
+    stopped_ = NloptStatus::kEvaluationFailed;
+  }
+  if (must_stop()) {
+    nlopt_force_stop(handle_.get());
+  }
   const double worst = worst_.value_or(0.0);
   return worst + 10.0 * (1.0 + std::abs(worst));
 }
@@ -107,12 +113,20 @@ double NloptRun::failure() {
 double NloptRun::evaluate(const double* x, double* gradient) {
   double f = 0.0;
   const View at(x, n_);
-  if (gradient != nullptr) Output(gradient, n_).setZero();
-  if (must_stop() || !program_.scaled_objective(at, f)) return failure();
-  if (gradient != nullptr && !program_.scaled_gradient(at, Output(gradient, n_))) return failure();
+  if (gradient != nullptr) {
+    Output(gradient, n_).setZero();
+  }
+  if (must_stop() || !program_.scaled_objective(at, f)) {
+    return failure();
+  }
+  if (gradient != nullptr && !program_.scaled_gradient(at, Output(gradient, n_))) {
+    return failure();
+  }
   worst_ = std::max(worst_.value_or(f), f);
   // The evaluator knows a point's violation only after its constraints.
-  if (!program_.scaled_constraints(at, c_)) return failure();
+  if (!program_.scaled_constraints(at, c_)) {
+    return failure();
+  }
   report_evaluation(f);
   return f;
 }
@@ -128,16 +142,28 @@ void NloptRun::report_evaluation(double f) {
       exception_ = std::current_exception();
     }
   }
-  if (must_stop()) nlopt_force_stop(handle_.get());
+  if (must_stop()) {
+    nlopt_force_stop(handle_.get());
+  }
 }
 
 bool NloptRun::must_stop() {
-  if (exception_ != nullptr || stopped_) return true;
-  if (evaluations_ == 0) return false;  // so that there is a point to report
-  if (options_.stop != nullptr && options_.stop->load()) stopped_ = NloptStatus::kInterrupted;
+  if (exception_ != nullptr || stopped_) {
+    return true;
+  }
+  if (evaluations_ == 0) {
+    return false;  // so that there is a point to report
+  }
+  if (options_.stop != nullptr && options_.stop->load()) {
+    stopped_ = NloptStatus::kInterrupted;
+  }
   // NLopt looks at its limit only between line searches.
-  if (evaluations_ >= options_.max_evaluations) stopped_ = NloptStatus::kEvaluationLimit;
-  if (elapsed() > options_.max_wall_time) stopped_ = NloptStatus::kTimeLimit;
+  if (evaluations_ >= options_.max_evaluations) {
+    stopped_ = NloptStatus::kEvaluationLimit;
+  }
+  if (elapsed() > options_.max_wall_time) {
+    stopped_ = NloptStatus::kTimeLimit;
+  }
   return stopped_.has_value();
 }
 
@@ -146,7 +172,9 @@ void NloptRun::constrain(const std::vector<Side>& sides, const double* x, double
   const View at(x, n_);
   const auto count = static_cast<Eigen::Index>(sides.size());
   Output(values, count).setZero();
-  if (jacobian != nullptr) Output(jacobian, count * n_).setZero();
+  if (jacobian != nullptr) {
+    Output(jacobian, count * n_).setZero();
+  }
   if (must_stop() || !program_.scaled_constraints(at, c_) ||
       (jacobian != nullptr && !program_.scaled_jacobian(at, jacobian_))) {
     // Far from feasible, so that the step is shortened.
@@ -178,8 +206,12 @@ void NloptRun::declare_constraints() {
       equations_.push_back({i, 1.0, lower[i]});
       continue;
     }
-    if (std::isfinite(lower[i])) inequalities_.push_back({i, -1.0, lower[i]});
-    if (std::isfinite(upper[i])) inequalities_.push_back({i, 1.0, upper[i]});
+    if (std::isfinite(lower[i])) {
+      inequalities_.push_back({i, -1.0, lower[i]});
+    }
+    if (std::isfinite(upper[i])) {
+      inequalities_.push_back({i, 1.0, upper[i]});
+    }
   }
   const auto count = [](const std::vector<Side>& sides) {
     return static_cast<unsigned>(sides.size());
@@ -199,7 +231,9 @@ void NloptRun::declare_constraints() {
 nlopt_result NloptRun::minimise() {
   const bool lbfgs = options_.algorithm == NloptAlgorithm::kLbfgs;
   handle_.reset(nlopt_create(lbfgs ? NLOPT_LD_LBFGS : NLOPT_LD_SLSQP, static_cast<unsigned>(n_)));
-  if (handle_ == nullptr) return NLOPT_OUT_OF_MEMORY;
+  if (handle_ == nullptr) {
+    return NLOPT_OUT_OF_MEMORY;
+  }
   nlopt_opt handle = handle_.get();
   nlopt_set_min_objective(handle, &NloptRun::objective, this);
   nlopt_set_lower_bounds(handle, program_.scaled_lower().data());
@@ -216,9 +250,13 @@ nlopt_result NloptRun::minimise() {
 }
 
 NloptStatus NloptRun::translate(nlopt_result code) const {
-  if (stopped_) return *stopped_;
+  if (stopped_) {
+    return *stopped_;
+  }
   const bool optimal = result_.feasible && result_.stationarity <= options_.optimality_tolerance;
-  if (optimal) return NloptStatus::kOptimal;
+  if (optimal) {
+    return NloptStatus::kOptimal;
+  }
   switch (code) {
     case NLOPT_OUT_OF_MEMORY:
       return NloptStatus::kOutOfMemory;
@@ -274,7 +312,9 @@ void NloptRun::describe() {
     r.message += concat(r.feasible ? "feasible" : "infeasible", ", objective ", r.objective,
                         ", gradient of the Lagrangian ", r.stationarity, ", largest violation ",
                         r.violation.amount);
-    if (r.violation.amount > 0.0) r.message += concat(" (", r.violation.name, ")");
+    if (r.violation.amount > 0.0) {
+      r.message += concat(" (", r.violation.name, ")");
+    }
   } else {
     r.message += "no point could be evaluated";
   }
@@ -282,12 +322,16 @@ void NloptRun::describe() {
     r.message += concat("; ", r.evaluations.failures,
                         " evaluations failed, the last with: ", evaluator.last_failure());
   }
-  if (!advice(r.status).empty()) r.message += concat("; ", advice(r.status));
+  if (!advice(r.status).empty()) {
+    r.message += concat("; ", advice(r.status));
+  }
 }
 
 NloptResult NloptRun::run(Nlp& nlp) {
   const nlopt_result code = minimise();
-  if (exception_ != nullptr) std::rethrow_exception(exception_);
+  if (exception_ != nullptr) {
+    std::rethrow_exception(exception_);
+  }
   take_best(nlp);
   result_.status = translate(code);
   describe();
@@ -312,11 +356,15 @@ void refuse_nlopt_options(const NloptOptions& o) {
   if (!(o.variable_tolerance >= 0.0)) {
     refuse("variable_tolerance", o.variable_tolerance, kNotNegative);
   }
-  if (o.max_evaluations < 1) refuse("max_evaluations", o.max_evaluations, kPositive);
+  if (o.max_evaluations < 1) {
+    refuse("max_evaluations", o.max_evaluations, kPositive);
+  }
   if (!(o.max_wall_time > 0.0)) {
     refuse("max_wall_time", o.max_wall_time, "a positive number of seconds");
   }
-  if (o.memory < 0) refuse("memory", o.memory, kNotNegative);
+  if (o.memory < 0) {
+    refuse("memory", o.memory, kNotNegative);
+  }
 }
 
 }  // namespace

@@ -7,7 +7,9 @@ namespace hbar::solvers {
 namespace {
 
 void refuse_size(const char* what, Eigen::Index got, Eigen::Index expected) {
-  if (got == expected) return;
+  if (got == expected) {
+    return;
+  }
   throw InvalidInput(concat("nlp: ", what, " has ", got, " entries; expected ", expected));
 }
 
@@ -29,11 +31,15 @@ void refuse_limits(const char* kind, Eigen::Index i, const std::vector<std::stri
 
 void refuse_scale(const char* kind, const Eigen::VectorXd& scale,
                   const std::vector<std::string>& names) {
-  if (scale.size() == 0) return;
+  if (scale.size() == 0) {
+    return;
+  }
   refuse_size(concat("scale of the ", kind, "s").c_str(), scale.size(),
               static_cast<Eigen::Index>(names.size()));
   for (Eigen::Index i = 0; i < scale.size(); ++i) {
-    if (scale[i] > 0.0 && std::isfinite(scale[i])) continue;
+    if (scale[i] > 0.0 && std::isfinite(scale[i])) {
+      continue;
+    }
     throw InvalidInput(
         concat(item(kind, i, names), ": the scale is ", scale[i], "; expected a positive number"));
   }
@@ -47,7 +53,9 @@ void refuse_pattern(const char* matrix, const SparsityPattern& pattern, Eigen::I
   for (std::size_t k = 0; k < pattern.rows.size(); ++k) {
     const int row = pattern.rows[k];
     const int column = pattern.columns[k];
-    if (row >= 0 && row < rows && column >= 0 && column < columns) continue;
+    if (row >= 0 && row < rows && column >= 0 && column < columns) {
+      continue;
+    }
     throw InvalidInput(concat("nlp: entry ", k, " of the ", matrix, " pattern is at row ", row,
                               ", column ", column, "; the ", matrix, " is ", rows, " x ", columns));
   }
@@ -55,7 +63,9 @@ void refuse_pattern(const char* matrix, const SparsityPattern& pattern, Eigen::I
 
 void validate_variables(const NlpVariables& v) {
   const Eigen::Index n = v.start.size();
-  if (n == 0) throw InvalidInput("nlp: there are no variables; expected at least one");
+  if (n == 0) {
+    throw InvalidInput("nlp: there are no variables; expected at least one");
+  }
   refuse_size("lower bounds of the variables", v.lower.size(), n);
   refuse_size("upper bounds of the variables", v.upper.size(), n);
   refuse_size("names of the variables", static_cast<Eigen::Index>(v.names.size()), n);
@@ -106,12 +116,16 @@ void validate(const Nlp& nlp) {
 }
 
 void validate_hessian(Nlp& nlp, HessianKind kind) {
-  if (kind == HessianKind::kLimitedMemory) return;
+  if (kind == HessianKind::kLimitedMemory) {
+    return;
+  }
   const SparsityPattern& pattern = nlp.hessian_pattern(kind);
   const Eigen::Index n = nlp.variables().start.size();
   refuse_pattern("Hessian", pattern, n, n);
   for (std::size_t k = 0; k < pattern.rows.size(); ++k) {
-    if (pattern.rows[k] >= pattern.columns[k]) continue;
+    if (pattern.rows[k] >= pattern.columns[k]) {
+      continue;
+    }
     throw InvalidInput(concat("nlp: entry ", k, " of the Hessian pattern is at row ",
                               pattern.rows[k], ", column ", pattern.columns[k],
                               "; expected the lower triangle, row >= column"));
@@ -127,8 +141,12 @@ Violation largest_violation(const Nlp& nlp, const Eigen::VectorXd& x, const Eige
       worst = {amount, limits.names[static_cast<std::size_t>(i)], relative};
     }
   };
-  for (Eigen::Index i = 0; i < c.size(); ++i) add(i, c[i], nlp.constraint_limits());
-  for (Eigen::Index i = 0; i < x.size(); ++i) add(i, x[i], nlp.variables());
+  for (Eigen::Index i = 0; i < c.size(); ++i) {
+    add(i, c[i], nlp.constraint_limits());
+  }
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    add(i, x[i], nlp.variables());
+  }
   return worst;
 }
 

@@ -7,7 +7,9 @@ namespace hbar::solvers {
 NlpEvaluator::NlpEvaluator(Nlp& nlp, double tolerance) : nlp_(nlp), tolerance_(tolerance) {}
 
 void NlpEvaluator::move_to(const Eigen::VectorXd& x) {
-  if (x_.size() == x.size() && x_ == x) return;
+  if (x_.size() == x.size() && x_ == x) {
+    return;
+  }
   x_ = x;
   f_state_ = g_state_ = c_state_ = jacobian_state_ = hessian_state_ = State::kUnknown;
   // Without constraints there is nothing to evaluate.
@@ -20,19 +22,27 @@ void NlpEvaluator::move_to(const Eigen::VectorXd& x) {
 /// Calls once per x; `call` returns whether the value is usable.
 template <typename Call>
 bool NlpEvaluator::evaluate(State& state, int& count, const Call& call) {
-  if (state != State::kUnknown) return state == State::kKnown;
-  if (exception_ != nullptr) return false;
+  if (state != State::kUnknown) {
+    return state == State::kKnown;
+  }
+  if (exception_ != nullptr) {
+    return false;
+  }
   state = State::kFailed;
   ++count;
   try {
-    if (call()) state = State::kKnown;
+    if (call()) {
+      state = State::kKnown;
+    }
   } catch (const EvaluationError& error) {
     last_failure_ = error.what();
   } catch (...) {
     exception_ = std::current_exception();
     return false;
   }
-  if (state == State::kFailed) ++counts_.failures;
+  if (state == State::kFailed) {
+    ++counts_.failures;
+  }
   return state == State::kKnown;
 }
 
@@ -43,7 +53,9 @@ bool NlpEvaluator::finite_or_fail(const Eigen::VectorXd& values, Eigen::Index si
         concat("nlp: ", what, " was resized to ", values.size(), " entries; expected ", size));
   }
   for (Eigen::Index i = 0; i < size; ++i) {
-    if (std::isfinite(values[i])) continue;
+    if (std::isfinite(values[i])) {
+      continue;
+    }
     last_failure_ = concat("nlp: entry ", i, " of ", what, " is ", values[i]);
     return false;
   }
@@ -55,10 +67,14 @@ const double* NlpEvaluator::objective(const Eigen::VectorXd& x) {
   const bool fresh = f_state_ == State::kUnknown;
   const bool known = evaluate(f_state_, counts_.objective, [&] {
     f_ = nlp_.objective(x_);
-    if (!std::isfinite(f_)) last_failure_ = concat("nlp: the objective is ", f_);
+    if (!std::isfinite(f_)) {
+      last_failure_ = concat("nlp: the objective is ", f_);
+    }
     return std::isfinite(f_);
   });
-  if (known && fresh) remember_if_best();
+  if (known && fresh) {
+    remember_if_best();
+  }
   return known ? &f_ : nullptr;
 }
 
@@ -81,7 +97,9 @@ const Eigen::VectorXd* NlpEvaluator::constraints(const Eigen::VectorXd& x) {
     nlp_.constraints(x_, c_);
     return finite_or_fail(c_, m, "the constraints");
   });
-  if (known && fresh) remember_if_best();
+  if (known && fresh) {
+    remember_if_best();
+  }
   return known ? &c_ : nullptr;
 }
 
@@ -117,13 +135,17 @@ const Eigen::VectorXd* NlpEvaluator::hessian(const Eigen::VectorXd& x, double si
 }
 
 void NlpEvaluator::remember_if_best() {
-  if (f_state_ != State::kKnown || c_state_ != State::kKnown) return;
+  if (f_state_ != State::kKnown || c_state_ != State::kKnown) {
+    return;
+  }
   const double violation = largest_violation(nlp_, x_, c_).relative;
   const bool feasible = violation <= tolerance_;
   const bool better = !best_.found || (feasible && !best_.feasible) ||
                       (feasible && best_.feasible && f_ < best_.objective) ||
                       (!feasible && !best_.feasible && violation < best_.violation);
-  if (better) best_ = {true, feasible, x_, c_, f_, violation};
+  if (better) {
+    best_ = {true, feasible, x_, c_, f_, violation};
+  }
 }
 
 }  // namespace hbar::solvers

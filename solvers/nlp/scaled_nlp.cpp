@@ -12,13 +12,17 @@ Eigen::VectorXd scale_or_ones(const Eigen::VectorXd& scale, Eigen::Index size) {
 
 /// values, zeros if there are none.
 Eigen::VectorXd of_size(const char* what, const Eigen::VectorXd& values, Eigen::Index size) {
-  if (values.size() == 0) return Eigen::VectorXd::Zero(size);
+  if (values.size() == 0) {
+    return Eigen::VectorXd::Zero(size);
+  }
   if (values.size() != size) {
     throw InvalidInput(
         concat("point: ", what, " has ", values.size(), " entries; expected ", size));
   }
   for (Eigen::Index i = 0; i < size; ++i) {
-    if (std::isfinite(values[i])) continue;
+    if (std::isfinite(values[i])) {
+      continue;
+    }
     throw InvalidInput(
         concat("point: entry ", i, " of ", what, " is ", values[i], "; expected a finite number"));
   }
@@ -55,7 +59,9 @@ ScaledNlp::ScaledNlp(Nlp& nlp, double tolerance, double objective_scale, Hessian
     throw InvalidInput(
         concat("the objective's scale is ", objective_scale, "; expected a positive number"));
   }
-  if (kind_ != HessianKind::kLimitedMemory) hessian_pattern_ = nlp.hessian_pattern(kind_);
+  if (kind_ != HessianKind::kLimitedMemory) {
+    hessian_pattern_ = nlp.hessian_pattern(kind_);
+  }
 }
 
 Eigen::VectorXd ScaledNlp::scaled_lower() const { return variables_.lower.cwiseQuotient(x_scale_); }
@@ -72,25 +78,33 @@ Eigen::VectorXd ScaledNlp::scaled_constraint_upper() const {
 
 bool ScaledNlp::scaled_objective(const View& x, double& f) {
   const double* value = evaluator_.objective(x.cwiseProduct(x_scale_));
-  if (value != nullptr) f = *value / f_scale_;
+  if (value != nullptr) {
+    f = *value / f_scale_;
+  }
   return value != nullptr;
 }
 
 bool ScaledNlp::scaled_gradient(const View& x, Span g) {
   const Eigen::VectorXd* value = evaluator_.gradient(x.cwiseProduct(x_scale_));
-  if (value != nullptr) g = value->cwiseProduct(x_scale_) / f_scale_;
+  if (value != nullptr) {
+    g = value->cwiseProduct(x_scale_) / f_scale_;
+  }
   return value != nullptr;
 }
 
 bool ScaledNlp::scaled_constraints(const View& x, Span c) {
   const Eigen::VectorXd* value = evaluator_.constraints(x.cwiseProduct(x_scale_));
-  if (value != nullptr) c = value->cwiseQuotient(c_scale_);
+  if (value != nullptr) {
+    c = value->cwiseQuotient(c_scale_);
+  }
   return value != nullptr;
 }
 
 bool ScaledNlp::scaled_jacobian(const View& x, Span values) {
   const Eigen::VectorXd* value = evaluator_.jacobian(x.cwiseProduct(x_scale_));
-  if (value == nullptr) return false;
+  if (value == nullptr) {
+    return false;
+  }
   for (std::size_t k = 0; k < jacobian_pattern_.rows.size(); ++k) {
     const auto entry = static_cast<Eigen::Index>(k);
     values[entry] = (*value)[entry] * x_scale_[jacobian_pattern_.columns[k]] /
@@ -102,7 +116,9 @@ bool ScaledNlp::scaled_jacobian(const View& x, Span values) {
 bool ScaledNlp::scaled_hessian(const View& x, double sigma, const View& lambda, Span values) {
   const Eigen::VectorXd* value = evaluator_.hessian(x.cwiseProduct(x_scale_), sigma / f_scale_,
                                                     lambda.cwiseQuotient(c_scale_), kind_);
-  if (value == nullptr) return false;
+  if (value == nullptr) {
+    return false;
+  }
   for (std::size_t k = 0; k < hessian_pattern_.rows.size(); ++k) {
     const auto entry = static_cast<Eigen::Index>(k);
     values[entry] = (*value)[entry] * x_scale_[hessian_pattern_.rows[k]] *
@@ -137,7 +153,9 @@ PrimalDualPoint ScaledNlp::unscaled(PrimalDualPoint point) const {
 }
 
 void ScaledNlp::throw_failure(const char* who) const {
-  if (evaluator_.exception() != nullptr) std::rethrow_exception(evaluator_.exception());
+  if (evaluator_.exception() != nullptr) {
+    std::rethrow_exception(evaluator_.exception());
+  }
   throw EvaluationError(
       concat(who, ": the point cannot be evaluated: ", evaluator_.last_failure()));
 }

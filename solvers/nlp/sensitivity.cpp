@@ -82,11 +82,17 @@ void HeldOptimum::refuse_theta() const {
 /// Finds what is held; multipliers of everything else become zero.
 void HeldOptimum::hold() {
   Eigen::VectorXd c(program_.constraint_count());
-  if (!program_.scaled_constraints(point_.x, c)) program_.throw_failure("sensitivity");
+  if (!program_.scaled_constraints(point_.x, c)) {
+    program_.throw_failure("sensitivity");
+  }
   held_ = find_active_set(program_, point_.x, c, options_.tolerance);
   const auto release = [&](Activity& activity, double multiplier, const std::string& name) {
-    if (activity == Activity::kInactive || activity == Activity::kEqual) return;
-    if (multiplier > options_.tolerance) return;
+    if (activity == Activity::kInactive || activity == Activity::kEqual) {
+      return;
+    }
+    if (multiplier > options_.tolerance) {
+      return;
+    }
     weak_.push_back(name);
     activity = Activity::kInactive;
   };
@@ -101,10 +107,14 @@ void HeldOptimum::hold() {
     double& multiplier = point_.constraint_multipliers[i];
     release(activity, activity == Activity::kUpper ? multiplier : -multiplier,
             nlp_.constraint_limits().names[static_cast<std::size_t>(i)]);
-    if (activity == Activity::kInactive) multiplier = 0.0;
+    if (activity == Activity::kInactive) {
+      multiplier = 0.0;
+    }
   }
   const Eigen::VectorXd& c_scale = nlp_.constraint_limits().scale;
-  if (c_scale.size() > 0) c = c.cwiseProduct(c_scale);
+  if (c_scale.size() > 0) {
+    c = c.cwiseProduct(c_scale);
+  }
   const Violation violation = largest_violation(nlp_, program_.unscaled(point_).x, c);
   if (violation.relative > options_.tolerance) {
     throw NumericalFailure(concat("sensitivity: the point is no optimum: ", violation.name,
@@ -117,8 +127,12 @@ void HeldOptimum::refuse_other_points() {
   point_.upper_multipliers.setZero();
   const Eigen::VectorXd gradient = lagrangian_gradient(program_, point_);
   for (Eigen::Index i = 0; i < gradient.size(); ++i) {
-    if (held_.variables[static_cast<std::size_t>(i)] != Activity::kInactive) continue;
-    if (std::abs(gradient[i]) <= options_.tolerance) continue;
+    if (held_.variables[static_cast<std::size_t>(i)] != Activity::kInactive) {
+      continue;
+    }
+    if (std::abs(gradient[i]) <= options_.tolerance) {
+      continue;
+    }
     throw NumericalFailure(
         concat("sensitivity: the point is no optimum: the Lagrangian's gradient ", "by ",
                variable_name(i), " is ", gradient[i],
@@ -132,7 +146,9 @@ void HeldOptimum::number_unknowns() {
     Eigen::VectorXi unknown =
         Eigen::VectorXi::Constant(static_cast<Eigen::Index>(activities.size()), -1);
     for (std::size_t i = 0; i < activities.size(); ++i) {
-      if ((activities[i] != Activity::kInactive) != held) continue;
+      if ((activities[i] != Activity::kInactive) != held) {
+        continue;
+      }
       unknown[static_cast<Eigen::Index>(i)] = unknowns_++;
     }
     return unknown;
@@ -140,17 +156,25 @@ void HeldOptimum::number_unknowns() {
   unknown_of_variable_ = number(held_.variables, false);
   unknown_of_constraint_ = number(held_.constraints, true);
   column_of_ = Eigen::VectorXi::Constant(point_.x.size(), -1);
-  for (std::size_t k = 0; k < theta_.size(); ++k) column_of_[theta_[k]] = static_cast<int>(k);
+  for (std::size_t k = 0; k < theta_.size(); ++k) {
+    column_of_[theta_[k]] = static_cast<int>(k);
+  }
 }
 
 void HeldOptimum::assemble() {
   std::vector<Eigen::Triplet<double>> entries;
   right_.setZero(unknowns_, parameter_count());
   const auto add = [&](int row, int variable, double value) {
-    if (row < 0) return;
+    if (row < 0) {
+      return;
+    }
     const int column = unknown_of_variable_[variable];
-    if (column >= 0) entries.emplace_back(row, column, value);
-    if (column_of_[variable] >= 0) right_(row, column_of_[variable]) -= value;
+    if (column >= 0) {
+      entries.emplace_back(row, column, value);
+    }
+    if (column_of_[variable] >= 0) {
+      right_(row, column_of_[variable]) -= value;
+    }
   };
   const SparsityPattern& H = program_.hessian_pattern();
   Eigen::VectorXd values(static_cast<Eigen::Index>(H.rows.size()));
@@ -160,7 +184,9 @@ void HeldOptimum::assemble() {
   for (std::size_t k = 0; k < H.rows.size(); ++k) {
     const double value = values[static_cast<Eigen::Index>(k)];
     add(unknown_of_variable_[H.rows[k]], H.columns[k], value);
-    if (H.rows[k] != H.columns[k]) add(unknown_of_variable_[H.columns[k]], H.rows[k], value);
+    if (H.rows[k] != H.columns[k]) {
+      add(unknown_of_variable_[H.columns[k]], H.rows[k], value);
+    }
   }
   const SparsityPattern& A = program_.jacobian_pattern();
   values.resize(static_cast<Eigen::Index>(A.rows.size()));
@@ -172,7 +198,9 @@ void HeldOptimum::assemble() {
     const int column = unknown_of_variable_[A.columns[k]];
     const double value = values[static_cast<Eigen::Index>(k)];
     add(row, A.columns[k], value);
-    if (row >= 0 && column >= 0) entries.emplace_back(column, row, value);
+    if (row >= 0 && column >= 0) {
+      entries.emplace_back(column, row, value);
+    }
   }
   K_.resize(unknowns_, unknowns_);
   K_.setFromTriplets(entries.begin(), entries.end());
@@ -203,12 +231,16 @@ std::string HeldOptimum::name_of_unknown(int unknown) const {
   const auto find = [unknown](const Eigen::VectorXi& numbers, const std::vector<std::string>& names,
                               const char* kind) -> std::string {
     for (Eigen::Index i = 0; i < numbers.size(); ++i) {
-      if (numbers[i] == unknown) return concat(kind, names[static_cast<std::size_t>(i)]);
+      if (numbers[i] == unknown) {
+        return concat(kind, names[static_cast<std::size_t>(i)]);
+      }
     }
     return "";
   };
   const std::string variable = find(unknown_of_variable_, nlp_.variables().names, "variable ");
-  if (!variable.empty()) return variable;
+  if (!variable.empty()) {
+    return variable;
+  }
   return find(unknown_of_constraint_, nlp_.constraint_limits().names, "constraint ");
 }
 
@@ -249,12 +281,16 @@ Sensitivity HeldOptimum::solve() {
     const double unit = size(v.scale, parameter);
     for (Eigen::Index i = 0; i < point_.x.size(); ++i) {
       const int unknown = unknown_of_variable_[i];
-      if (unknown >= 0) result.dx_dtheta(i, j) = right_(unknown, j) * size(v.scale, i) / unit;
+      if (unknown >= 0) {
+        result.dx_dtheta(i, j) = right_(unknown, j) * size(v.scale, i) / unit;
+      }
     }
     result.dx_dtheta(parameter, j) = 1.0;
     for (Eigen::Index i = 0; i < result.dlambda_dtheta.rows(); ++i) {
       const int unknown = unknown_of_constraint_[i];
-      if (unknown < 0) continue;
+      if (unknown < 0) {
+        continue;
+      }
       result.dlambda_dtheta(i, j) =
           right_(unknown, j) * options_.objective_scale / (size(limits.scale, i) * unit);
     }

@@ -59,12 +59,18 @@ bool gradient_is_right(const hbar::Model& model) {
 
 bool solvers_solve() {
   hbar::solvers::SparseMatrix A(3, 3);
-  for (int i = 0; i < 3; ++i) A.insert(i, i) = 2.0;
-  for (int i = 0; i < 2; ++i) A.insert(i + 1, i) = A.insert(i, i + 1) = -1.0;
+  for (int i = 0; i < 3; ++i) {
+    A.insert(i, i) = 2.0;
+  }
+  for (int i = 0; i < 2; ++i) {
+    A.insert(i + 1, i) = A.insert(i, i + 1) = -1.0;
+  }
   A.makeCompressed();
   std::vector<std::string> names = {"auto"};
   for (const auto& entry : hbar::solvers::available_solvers()) {
-    if (entry.claims(hbar::solvers::Structure::kDefinite)) names.push_back(entry.name);
+    if (entry.claims(hbar::solvers::Structure::kDefinite)) {
+      names.push_back(entry.name);
+    }
   }
 #ifdef STRANGER_HAS_SUITE
   bool ok = names.size() > 3;

@@ -21,10 +21,14 @@ class Program : public Nlp {
     variables_.lower.setConstant(n, -kInfinity);
     variables_.upper.setConstant(n, kInfinity);
     variables_.start = std::move(start);
-    for (Eigen::Index i = 0; i < n; ++i) variables_.names.push_back(concat("x", i));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      variables_.names.push_back(concat("x", i));
+    }
     limits_.lower.setConstant(constraint_count, -kInfinity);
     limits_.upper.setConstant(constraint_count, kInfinity);
-    for (int i = 0; i < constraint_count; ++i) limits_.names.push_back(concat("c", i));
+    for (int i = 0; i < constraint_count; ++i) {
+      limits_.names.push_back(concat("c", i));
+    }
     for (int i = 0; i < constraint_count; ++i) {
       for (int j = 0; j < n; ++j) {
         pattern_.rows.push_back(i);
@@ -75,7 +79,9 @@ class Rosenbrock : public CurvedProgram {
 
   double objective(const Eigen::VectorXd& x) override {
     ++visits[{x[0], x[1]}];
-    if (on_objective) on_objective(x);
+    if (on_objective) {
+      on_objective(x);
+    }
     return std::pow(1.0 - x[0], 2) + 100.0 * std::pow(x[1] - x[0] * x[0], 2);
   }
   void objective_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& g) override {

@@ -15,7 +15,9 @@ inline Eigen::MatrixXd random_dense(int rows, int columns, unsigned seed) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Eigen::MatrixXd result(rows, columns);
   for (int j = 0; j < columns; ++j) {
-    for (int i = 0; i < rows; ++i) result(i, j) = uniform(engine);
+    for (int i = 0; i < rows; ++i) {
+      result(i, j) = uniform(engine);
+    }
   }
   return result;
 }
@@ -35,7 +37,9 @@ inline SparseMatrix random_sparse(int size, int per_column, unsigned seed) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int j = 0; j < size; ++j) {
     entries.emplace_back(j, j, 3.0 + uniform(engine));
-    for (int k = 0; k < per_column; ++k) entries.emplace_back(any_row(engine), j, uniform(engine));
+    for (int k = 0; k < per_column; ++k) {
+      entries.emplace_back(any_row(engine), j, uniform(engine));
+    }
   }
   SparseMatrix A(size, size);
   A.setFromTriplets(entries.begin(), entries.end());
@@ -45,7 +49,9 @@ inline SparseMatrix random_sparse(int size, int per_column, unsigned seed) {
 /// Block lower triangular: dense diagonal blocks, each coupled to the two blocks before it.
 inline SparseMatrix random_block_lower(const std::vector<int>& sizes, unsigned seed) {
   std::vector<int> begin = {0};
-  for (const int size : sizes) begin.push_back(begin.back() + size);
+  for (const int size : sizes) {
+    begin.push_back(begin.back() + size);
+  }
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t b = 0; b < sizes.size(); ++b) {
     for (std::size_t a = b < 2 ? 0 : b - 2; a <= b; ++a) {

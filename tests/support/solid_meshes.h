@@ -55,9 +55,13 @@ inline TriangleMesh icosphere(double radius, int levels) {
                              {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
     }
     mesh.triangles = finer.triangles;
-    for (Eigen::Vector3d& vertex : mesh.vertices) vertex.normalize();
+    for (Eigen::Vector3d& vertex : mesh.vertices) {
+      vertex.normalize();
+    }
   }
-  for (Eigen::Vector3d& vertex : mesh.vertices) vertex *= radius / vertex.norm();
+  for (Eigen::Vector3d& vertex : mesh.vertices) {
+    vertex *= radius / vertex.norm();
+  }
   return mesh;
 }
 
@@ -66,7 +70,9 @@ inline TriangleMesh star_mesh(int levels, unsigned seed) {
   TriangleMesh mesh = icosphere(1.0, levels);
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> radius(0.5, 1.5);
-  for (Eigen::Vector3d& vertex : mesh.vertices) vertex *= radius(engine);
+  for (Eigen::Vector3d& vertex : mesh.vertices) {
+    vertex *= radius(engine);
+  }
   return mesh;
 }
 

@@ -13,7 +13,9 @@ std::vector<std::vector<std::string>> texts(std::string_view text) {
   std::vector<std::vector<std::string>> out;
   for (const CsvRow& row : parse_csv(text, "a.csv")) {
     out.emplace_back();
-    for (const CsvCell& cell : row) out.back().push_back(cell.text);
+    for (const CsvCell& cell : row) {
+      out.back().push_back(cell.text);
+    }
   }
   return out;
 }

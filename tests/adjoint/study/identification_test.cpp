@@ -228,7 +228,9 @@ TEST_F(IdentificationOfSmallProblem, HasATermWithExactDerivatives) {
   term->second_partials(values, second);
   EXPECT_NEAR(second[0], 3.0 / (sigma[0] * sigma[0]) + 3.0 / (sigma[5] * sigma[5]), 1e-13);
   EXPECT_NEAR(second[1], 3.0 / (sigma[1] * sigma[1]), 1e-13);
-  for (const SecondPlace& place : places) EXPECT_EQ(place.a, place.b);
+  for (const SecondPlace& place : places) {
+    EXPECT_EQ(place.a, place.b);
+  }
 }
 
 TEST_F(IdentificationOfSmallProblem, RefusesWhatDoesNotFit) {

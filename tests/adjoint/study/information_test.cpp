@@ -156,7 +156,9 @@ TEST(Information, ForeseesHowEstimatesScatter) {
   int inside = 0;
   for (int sample = 0; sample < kFits; ++sample) {
     Eigen::VectorXd noise(12);
-    for (double& entry : noise) entry = normal(random);
+    for (double& entry : noise) {
+      entry = normal(random);
+    }
     const Eigen::Vector3d error = least_squares.solve(noise);
     const Eigen::Vector3d relative = error.cwiseQuotient(foreseen.standard_deviations);
     scatter += relative * relative.transpose() / kFits;

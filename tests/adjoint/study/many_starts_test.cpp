@@ -97,7 +97,9 @@ TEST_F(ManyStarts, LoseNoMoreThanRunningJobsWhenTheParentIsKilled) {
   const pid_t parent = ::fork();
   if (parent == 0) {
     options.on_job = [](int index, const JobResult&) {
-      if (index == 2) ::raise(SIGKILL);
+      if (index == 2) {
+        ::raise(SIGKILL);
+      }
     };
     run_jobs(options, draw_job);
     ::_exit(0);
@@ -114,15 +116,25 @@ TEST_F(ManyStarts, RecordWhatFailsAndGoOn) {
   JobOptions options = draw_study(folder_ / "table", 3);
   const Job job = [](int index, std::mt19937_64& random) {
     JobResult result = draw_job(index, random);
-    if (index == 0) throw std::runtime_error("no, thanks");
+    if (index == 0) {
+      throw std::runtime_error("no, thanks");
+    }
     if (index == 1) {
       ::signal(SIGSEGV, SIG_DFL);
       ::raise(SIGSEGV);
     }
-    if (index == 2) throw 7;
-    if (index == 3) result.numbers[1] = std::nan("");
-    if (index == 4) result.numbers.pop_back();
-    if (index == 5) ::_exit(3);
+    if (index == 2) {
+      throw 7;
+    }
+    if (index == 3) {
+      result.numbers[1] = std::nan("");
+    }
+    if (index == 4) {
+      result.numbers.pop_back();
+    }
+    if (index == 5) {
+      ::_exit(3);
+    }
     return result;
   };
   const JobReport report = run_jobs(options, job);
@@ -154,7 +166,9 @@ TEST_F(ManyStarts, EndAJobThatHangs) {
   options.most = 1;
   options.time_limit = 0.05;
   const JobReport report = run_jobs(options, [](int, std::mt19937_64&) -> JobResult {
-    while (true) ::pause();
+    while (true) {
+      ::pause();
+    }
   });
   ASSERT_TRUE(report.results[0].has_value());
   EXPECT_TRUE(report.results[0]->failed);
@@ -167,7 +181,9 @@ TEST_F(ManyStarts, StopWhenTheFlagIsSet) {
   options.stop = &stop;
   options.on_job = [&](int, const JobResult&) { stop = true; };
   const JobReport report = run_jobs(options, [](int index, std::mt19937_64& random) {
-    if (index > 0) ::pause();
+    if (index > 0) {
+      ::pause();
+    }
     return draw_job(index, random);
   });
   EXPECT_EQ(report.ran, 1);
@@ -202,7 +218,9 @@ TEST_F(ManyStarts, FindTheBestOfSeveralMinimaWithIpopt) {
   const JobReport report =
       run_jobs({.name = "minima", .count = 4, .columns = {"x"}, .workers = 2}, job);
   ASSERT_TRUE(report.complete());
-  for (const auto& result : report.results) EXPECT_EQ(result->status, "optimal");
+  for (const auto& result : report.results) {
+    EXPECT_EQ(result->status, "optimal");
+  }
   EXPECT_EQ(report.best(), 2);
   EXPECT_NEAR(report.results[2]->numbers[0], -1.0241, 1e-4);
   EXPECT_NEAR(report.results[0]->numbers[0], 0.9740, 1e-4);

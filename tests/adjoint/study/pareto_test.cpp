@@ -39,7 +39,9 @@ WeightedSolve ipopt_solve(bool warm_starts, int& iterations) {
     WeightedSum program(weight);
     solvers::IpoptOptions options;
     options.tolerance = 1e-9;
-    if (warm != nullptr && warm_starts) options.warm_start = *warm;
+    if (warm != nullptr && warm_starts) {
+      options.warm_start = *warm;
+    }
     const solvers::IpoptResult result = solve_with_ipopt(program, options);
     iterations += result.iterations;
     return WeightedOptimum{.converged = result.converged(),
@@ -78,9 +80,15 @@ TEST(Pareto, SweepMarksWhatIsDominatedAndKeepsWhatFails) {
     WeightedOptimum optimum{
         .converged = true, .f1 = 1.0 - weight, .f2 = weight, .point = {}, .message = {}};
     optimum.point.x = Eigen::VectorXd::Constant(1, weight);
-    if (weight == 0.2) throw NumericalFailure("no step");
-    if (weight == 0.4) optimum.f2 = 0.9;  // worse than 0.8 in both
-    if (weight == 0.6) optimum.f1 = testing::kNan;
+    if (weight == 0.2) {
+      throw NumericalFailure("no step");
+    }
+    if (weight == 0.4) {
+      optimum.f2 = 0.9;  // worse than 0.8 in both
+    }
+    if (weight == 0.6) {
+      optimum.f1 = testing::kNan;
+    }
     return optimum;
   };
   const std::vector<ParetoPoint> points = pareto_sweep(weights, solve);
@@ -103,7 +111,9 @@ TEST(Pareto, SweepDoesNotCallEqualPointsDominated) {
   const auto same = [](double, const solvers::PrimalDualPoint*) {
     return WeightedOptimum{.converged = true, .f1 = 1.0, .f2 = 2.0};
   };
-  for (const ParetoPoint& point : pareto_sweep({0.3, 0.1}, same)) EXPECT_FALSE(point.dominated);
+  for (const ParetoPoint& point : pareto_sweep({0.3, 0.1}, same)) {
+    EXPECT_FALSE(point.dominated);
+  }
 }
 
 TEST(Pareto, SweepRefusesWeightsThatAreNone) {

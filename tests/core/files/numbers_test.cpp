@@ -19,7 +19,9 @@ class CommaLocale {
       : old_c_(std::setlocale(LC_ALL, nullptr)),
         old_cpp_(std::locale::global(std::locale(std::locale::classic(), new Comma))) {
     for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE"}) {
-      if (std::setlocale(LC_ALL, name) != nullptr) break;
+      if (std::setlocale(LC_ALL, name) != nullptr) {
+        break;
+      }
     }
   }
   CommaLocale(const CommaLocale&) = delete;

@@ -32,7 +32,9 @@ std::vector<NamedMesh> named_meshes() {
                                  {"rod", box_mesh({0.02, 2.0, 0.02})},
                                  {"star", star_mesh(2, 1)}};
   list.push_back({"moved", star_mesh(1, 2)});
-  for (Eigen::Vector3d& vertex : list.back().mesh.vertices) vertex.array() += 100.0;
+  for (Eigen::Vector3d& vertex : list.back().mesh.vertices) {
+    vertex.array() += 100.0;
+  }
   return list;
 }
 
@@ -87,7 +89,9 @@ TEST(DistanceGrid, TellsItsErrorNearTheSurface) {
     for (int i = 0; i < 20000; ++i) {
       const Eigen::Vector3d x = point_around(engine, exact.box(), 0.05);
       const double distance = exact.signed_distance(x);
-      if (std::abs(distance) > 2.0 * cell) continue;
+      if (std::abs(distance) > 2.0 * cell) {
+        continue;
+      }
       largest = std::max(largest, std::abs(grid.sample(x).distance - distance));
     }
     // Not every point is a centre of a cell; where a kink passes is the grid's luck.

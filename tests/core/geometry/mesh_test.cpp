@@ -64,7 +64,9 @@ TEST(SolidMoments, MoveAndTurnWithTheMesh) {
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
   const Eigen::Vector3d p(100.0, -200.0, 300.0);
   TriangleMesh moved = mesh;
-  for (Eigen::Vector3d& point : moved.vertices) point = R * point + p;
+  for (Eigen::Vector3d& point : moved.vertices) {
+    point = R * point + p;
+  }
   EXPECT_EQ(solid_refusal(moved), "accepted");
   const SolidMoments other = solid_moments(moved);
   EXPECT_NEAR(other.volume, moments.volume, 1e-13);
@@ -109,7 +111,9 @@ TEST(CheckSolid, RefusesWithTheWholeMessage) {
             "mesh: the edge from (0, 0, 0) to (1, 0, 0) has two triangles of opposite orientation; "
             "all corners must run counter-clockwise seen from outside");
   mesh = tetrahedron();
-  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+  for (auto& triangle : mesh.triangles) {
+    std::swap(triangle[1], triangle[2]);
+  }
   EXPECT_EQ(solid_refusal(mesh).substr(0, 49), "mesh: the surface encloses the volume -0.166667; ");
 }
 

@@ -46,7 +46,9 @@ double from_surface(const Shape& shape, const Eigen::Vector3d& C) {
   if (const auto* cuboid = std::get_if<Cuboid>(&shape)) {
     return (C.cwiseAbs() - 0.5 * cuboid->size).maxCoeff();
   }
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return C.norm() - sphere->radius;
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    return C.norm() - sphere->radius;
+  }
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     return std::max(C.head<2>().norm() - cylinder->radius,
                     std::abs(C.z()) - 0.5 * cylinder->length);
@@ -69,7 +71,9 @@ TEST(EverySampling, HasItsNumberOfDifferentPointsOnTheSurface) {
         EXPECT_GT((points.col(i) - points.col(j)).norm(), 1e-3);
       }
     }
-    if (points.cols() == 0) continue;
+    if (points.cols() == 0) {
+      continue;
+    }
     EXPECT_LT(points.rowwise().mean().norm(), 1e-15);
   }
 }
@@ -81,7 +85,9 @@ TEST(SurfacePoints, OfACuboidRunFastestAlongZ) {
   int column = 0;
   for (const double x : {-1.0, 0.0, 1.0}) {
     for (const double y : {-2.0, 0.0, 2.0}) {
-      for (const double z : {-4.0, 4.0}) expected.col(column++) << x, y, z;
+      for (const double z : {-4.0, 4.0}) {
+        expected.col(column++) << x, y, z;
+      }
     }
   }
   EXPECT_EQ(points, expected);

@@ -34,14 +34,24 @@ double triangle_distance(const std::array<Eigen::Vector3d, 3>& corners, const Ei
   const double d4 = ac.dot(x - b);
   const double d5 = ab.dot(x - c);
   const double d6 = ac.dot(x - c);
-  if (d1 <= 0.0 && d2 <= 0.0) return (x - a).norm();
-  if (d3 >= 0.0 && d4 <= d3) return (x - b).norm();
-  if (d6 >= 0.0 && d5 <= d6) return (x - c).norm();
+  if (d1 <= 0.0 && d2 <= 0.0) {
+    return (x - a).norm();
+  }
+  if (d3 >= 0.0 && d4 <= d3) {
+    return (x - b).norm();
+  }
+  if (d6 >= 0.0 && d5 <= d6) {
+    return (x - c).norm();
+  }
   const double vc = d1 * d4 - d3 * d2;
   const double vb = d5 * d2 - d1 * d6;
   const double va = d3 * d6 - d5 * d4;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return (x - a - d1 / (d1 - d3) * ab).norm();
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return (x - a - d2 / (d2 - d6) * ac).norm();
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
+    return (x - a - d1 / (d1 - d3) * ab).norm();
+  }
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
+    return (x - a - d2 / (d2 - d6) * ac).norm();
+  }
   if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
     return (x - b - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b)).norm();
   }
@@ -183,7 +193,9 @@ TEST(TriangleDistance, MovesWithTheMesh) {
   const Eigen::Matrix3d R =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, -2.0, 0.5).normalized()).toRotationMatrix();
   const Eigen::Vector3d p(100.0, -200.0, 300.0);
-  for (Eigen::Vector3d& vertex : mesh.vertices) vertex = R * vertex + p;
+  for (Eigen::Vector3d& vertex : mesh.vertices) {
+    vertex = R * vertex + p;
+  }
   const TriangleDistance moved(mesh);
   std::mt19937 engine(7);
   for (int i = 0; i < 1000; ++i) {

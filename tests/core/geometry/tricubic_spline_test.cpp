@@ -19,7 +19,9 @@ std::vector<double> values_of(const GridNodes& nodes, const Function& function) 
   std::vector<double> values;
   for (int k = 0; k < nodes.count.z(); ++k) {
     for (int j = 0; j < nodes.count.y(); ++j) {
-      for (int i = 0; i < nodes.count.x(); ++i) values.push_back(function(nodes.point(i, j, k)));
+      for (int i = 0; i < nodes.count.x(); ++i) {
+        values.push_back(function(nodes.point(i, j, k)));
+      }
     }
   }
   return values;

@@ -59,7 +59,9 @@ TEST(EveryRecordedScene, HasItsNumberOfContactPoints) {
     SCOPED_TRACE(scene.scene);
     const Model model = build_model(read_scene(std::string(kScenes) + "/" + scene.scene + ".xml"));
     std::vector<Eigen::Index> counts;
-    for (const hbar::Link& link : model.links()) counts.push_back(link.body.contact_points.cols());
+    for (const hbar::Link& link : model.links()) {
+      counts.push_back(link.body.contact_points.cols());
+    }
     EXPECT_EQ(counts, scene.counts);
   }
 }

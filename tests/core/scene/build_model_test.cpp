@@ -37,12 +37,16 @@ void expect_body(const hbar::Body& body, const RecordedBody& expected, double re
 
 TEST(BuildModel, BuildsEveryRecordedScene) {
   for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
-    if (entry.path().extension() != ".xml") continue;
+    if (entry.path().extension() != ".xml") {
+      continue;
+    }
     SCOPED_TRACE(entry.path().string());
     const Scene scene = read_scene(entry.path());
     const Model model = build_model(scene);
     std::size_t links = 0;
-    for (const Robot& robot : scene.description.robots) links += robot.links.size();
+    for (const Robot& robot : scene.description.robots) {
+      links += robot.links.size();
+    }
     EXPECT_EQ(model.links().size(), links);
     EXPECT_EQ(model.motors().size(), scene.description.motors.size());
     EXPECT_EQ(model.end_effectors().size(), scene.description.end_effectors.size());

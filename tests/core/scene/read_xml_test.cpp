@@ -11,7 +11,9 @@ namespace {
 TEST(ReadScene, ReadsEveryRecordedScene) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
-    if (entry.path().extension() != ".xml") continue;
+    if (entry.path().extension() != ".xml") {
+      continue;
+    }
     SCOPED_TRACE(entry.path().string());
     const Scene scene = read_scene(entry.path());
     EXPECT_EQ(scene.file, entry.path().filename());
@@ -112,7 +114,9 @@ TEST(ReadScene, ReadsAChainOfFiveThousandFlatLinks) {
   std::string text = "<redmax><robot>";
   for (int i = 0; i < 5000; ++i) {
     text += "<link name=\"l" + std::to_string(i) + "\"";
-    if (i > 0) text += " parent=\"l" + std::to_string(i - 1) + "\"";
+    if (i > 0) {
+      text += " parent=\"l" + std::to_string(i - 1) + "\"";
+    }
     text += "><joint type=\"revolute\" axis=\"0 0 1\"/><body type=\"sphere\" radius=\"1\"/></link>";
   }
   const Scene scene = read_scene_text(text + "</robot></redmax>", "a.xml");

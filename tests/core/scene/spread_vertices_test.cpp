@@ -11,7 +11,9 @@ namespace {
 TriangleMesh square(int n) {
   TriangleMesh mesh;
   for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) mesh.vertices.emplace_back(i, j, 0.0);
+    for (int j = 0; j < n; ++j) {
+      mesh.vertices.emplace_back(i, j, 0.0);
+    }
   }
   for (int i = 0; i + 1 < n; ++i) {
     for (int j = 0; j + 1 < n; ++j) {
@@ -64,7 +66,9 @@ TEST(SpreadVertices, TakeEachPlaceOnceAndOnlyWhatTrianglesHave) {
   TriangleMesh mesh = square(3);
   mesh.vertices.emplace_back(50.0, 50.0, 50.0);  // in no triangle
   const auto first = static_cast<int>(mesh.vertices.size());
-  for (int i = 0; i < 3; ++i) mesh.vertices.push_back(mesh.vertices[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < 3; ++i) {
+    mesh.vertices.push_back(mesh.vertices[static_cast<std::size_t>(i)]);
+  }
   mesh.triangles.push_back({first, first + 1, first + 2});  // places that are there already
   const Eigen::Matrix3Xd points = spread_vertices(mesh, {1.0, 1.0, 0.0}, 64);
   EXPECT_EQ(points.cols(), 9);

@@ -107,7 +107,9 @@ Description everything() {
 
 TEST(WriteScene, EveryRecordedSceneReadsBackEqual) {
   for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
-    if (entry.path().extension() != ".xml") continue;
+    if (entry.path().extension() != ".xml") {
+      continue;
+    }
     SCOPED_TRACE(entry.path().string());
     const Description description = read_scene(entry.path()).description;
     EXPECT_EQ(back(description), description);

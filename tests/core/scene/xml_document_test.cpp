@@ -43,7 +43,9 @@ TEST(XmlDocument, RefusesBytesThatAreNoText) {
 
 TEST(XmlDocument, RefusesDeepNesting) {
   std::string text = "<redmax><robot>";
-  for (int i = 0; i < 100000; ++i) text += "<link>";
+  for (int i = 0; i < 100000; ++i) {
+    text += "<link>";
+  }
   EXPECT_EQ(
       parse_refusal(text),
       concat("bad.xml:1: elements are nested too deeply; at most ", TINYXML2_MAX_ELEMENT_DEPTH,

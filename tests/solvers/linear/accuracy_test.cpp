@@ -28,7 +28,9 @@ std::unique_ptr<LinearSolver> factorized(const SparseMatrix& A) {
 Eigen::MatrixXd whole_hilbert(int n, double multiple) {
   Eigen::MatrixXd H(n, n);
   for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) H(i, j) = multiple / (i + j + 1);
+    for (int j = 0; j < n; ++j) {
+      H(i, j) = multiple / (i + j + 1);
+    }
   }
   return H;
 }
@@ -165,7 +167,9 @@ TEST(EstimateCondition, KnowsHilbertMatrices) {
 TEST(EstimateCondition, IsNotFooledByCancellation) {
   // The ascent alone starts at the mean of the columns, which is zero for this inverse.
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(6, 6);
-  for (int j = 0; j < 6; ++j) inverse(0, j) = j % 2 == 0 ? 1e6 : -1e6;
+  for (int j = 0; j < 6; ++j) {
+    inverse(0, j) = j % 2 == 0 ? 1e6 : -1e6;
+  }
   const SparseMatrix A = sparse_of(inverse.inverse());
   EXPECT_GE(estimate_condition(*factorized(A), A), true_condition(A) / 3.0);
 }

@@ -55,7 +55,9 @@ SparseMatrix random_tridiagonal(const std::vector<int>& sizes, unsigned seed) {
 void empty_diagonal(SparseMatrix& A, int size) {
   for (Eigen::Index j = 0; j < A.cols(); ++j) {
     for (SparseMatrix::InnerIterator entry(A, j); entry; ++entry) {
-      if (entry.row() / size == j / size) entry.valueRef() = 0.0;
+      if (entry.row() / size == j / size) {
+        entry.valueRef() = 0.0;
+      }
     }
   }
 }
@@ -89,7 +91,9 @@ TEST(BlockBanded, KeepsTheOutlineOfTheBand) {
   for (std::size_t b = 0; b < 10; ++b) {
     const Eigen::MatrixXd diagonal = 9.0 * Eigen::MatrixXd::Identity(4, 4);
     testing::append_block(blocks, b, b, diagonal + random_dense(4, 4, 1), entries);
-    if (b > 0) testing::append_block(blocks, b, b - 1, random_dense(4, 4, 2), entries);
+    if (b > 0) {
+      testing::append_block(blocks, b, b - 1, random_dense(4, 4, 2), entries);
+    }
   }
   SparseMatrix A(40, 40);
   A.setFromTriplets(entries.begin(), entries.end());
@@ -108,7 +112,9 @@ TEST(BlockBanded, DoesNotMindRowsOfVerySmallOrLargeSize) {
   const SparseMatrix A = random_tridiagonal(blocks, 7);
   SparseMatrix scaled = A;
   Eigen::VectorXd size(15);
-  for (int i = 0; i < 15; ++i) size[i] = std::pow(10.0, 8 * (i % 3 - 1));
+  for (int i = 0; i < 15; ++i) {
+    size[i] = std::pow(10.0, 8 * (i % 3 - 1));
+  }
   scaled = (size.asDiagonal() * A).eval();
   scaled.makeCompressed();
   const auto solver = factorized(scaled, blocks);

@@ -194,7 +194,9 @@ TEST_P(EveryDefiniteCholmod, NamesTheRowWhereAMatrixStopsBeingDefinite) {
   SparseMatrix bad = good;
   bad.coeffRef(17, 17) = -2.0;
   for (const Ordering ordering : kSymmetric) {
-    if (ordering == Ordering::kNatural) continue;  // which eliminates row 0 before its neighbours
+    if (ordering == Ordering::kNatural) {
+      continue;  // which eliminates row 0 before its neighbours
+    }
     for (const IndexWidth width : kWidths) {
       const auto solver = GetParam()(options_of(ordering, width));
       solver->name_unknowns(name_of_unknown);
@@ -225,7 +227,9 @@ TEST_P(EveryDefiniteCholmod, RefusesAPatternThatIsNotSymmetric) {
 TEST_P(EveryDefiniteCholmod, TakesUnknownsOfVeryDifferentSizes) {
   SparseMatrix A = any_definite(2);
   Eigen::VectorXd scale(A.rows());
-  for (int i = 0; i < scale.size(); ++i) scale[i] = i % 3 == 0 ? 1e-7 : 1e7;
+  for (int i = 0; i < scale.size(); ++i) {
+    scale[i] = i % 3 == 0 ? 1e-7 : 1e7;
+  }
   A = scale.asDiagonal() * A * scale.asDiagonal();
   EXPECT_NO_THROW((void)factorized(GetParam(), {}, A));
 }

@@ -24,8 +24,12 @@ SparseMatrix arrow(int size) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < size; ++i) {
     entries.emplace_back(i, i, 2.0 * size);
-    if (i > 0) entries.emplace_back(i, 0, 1.0);
-    if (i > 0) entries.emplace_back(0, i, 1.0);
+    if (i > 0) {
+      entries.emplace_back(i, 0, 1.0);
+    }
+    if (i > 0) {
+      entries.emplace_back(0, i, 1.0);
+    }
   }
   SparseMatrix A(size, size);
   A.setFromTriplets(entries.begin(), entries.end());
@@ -45,7 +49,9 @@ TEST(EigenSparseLu, MinimumDegreeStaysSmallOnAGrid) {
   for (int i = 0; i < side * side; ++i) {
     entries.emplace_back(i, i, 4.5);
     for (const int j : {i + 1, i + side}) {
-      if (j >= side * side || (j == i + 1 && j % side == 0)) continue;
+      if (j >= side * side || (j == i + 1 && j % side == 0)) {
+        continue;
+      }
       entries.emplace_back(i, j, -1.0);
       entries.emplace_back(j, i, -1.0);
     }

@@ -37,8 +37,12 @@ TEST(LapackBand, AgreesWithBlockBanded) {
 TEST(LapackBand, KeepsABandThatGrowsByTheLowerOne) {
   // One diagonal below, two above: 1 + 2 + 1 + 1 rows.
   Eigen::MatrixXd dense = 4.0 * Eigen::MatrixXd::Identity(6, 6);
-  for (int i = 0; i + 1 < 6; ++i) dense(i + 1, i) = 1.0;
-  for (int i = 0; i + 2 < 6; ++i) dense(i, i + 2) = 1.0;
+  for (int i = 0; i + 1 < 6; ++i) {
+    dense(i + 1, i) = 1.0;
+  }
+  for (int i = 0; i + 2 < 6; ++i) {
+    dense(i, i + 2) = 1.0;
+  }
   const auto solver = make_lapack_band();
   solver->analyze(sparse_of(dense));
   solver->factorize(sparse_of(dense));

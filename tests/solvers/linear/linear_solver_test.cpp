@@ -292,8 +292,12 @@ std::string solve_identity(double factor, SolverStatistics* statistics = nullptr
   Eigen::VectorXd x(3);
   const std::string message =
       message_of<NumericalFailure>([&] { solver.solve(Eigen::VectorXd::Ones(3), x); });
-  if (statistics != nullptr) *statistics = solver.statistics();
-  if (solution != nullptr) *solution = x;
+  if (statistics != nullptr) {
+    *statistics = solver.statistics();
+  }
+  if (solution != nullptr) {
+    *solution = x;
+  }
   return message;
 }
 

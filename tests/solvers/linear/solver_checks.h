@@ -90,7 +90,9 @@ inline SparseMatrix arrow_matrix(int size) {
 /// Identity, but for a few entries.
 inline SparseMatrix nearly_identity(int size, const std::vector<Eigen::Triplet<double>>& others) {
   std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < size; ++i) entries.emplace_back(i, i, 1.0);
+  for (int i = 0; i < size; ++i) {
+    entries.emplace_back(i, i, 1.0);
+  }
   entries.insert(entries.end(), others.begin(), others.end());
   SparseMatrix A(size, size);
   A.setFromTriplets(entries.begin(), entries.end(), [](double, double last) { return last; });
@@ -101,7 +103,9 @@ inline SparseMatrix nearly_identity(int size, const std::vector<Eigen::Triplet<d
 inline SparseMatrix hilbert_matrix(int size) {
   Eigen::MatrixXd A(size, size);
   for (int i = 0; i < size; ++i) {
-    for (int j = 0; j < size; ++j) A(i, j) = 1.0 / (i + j + 1);
+    for (int j = 0; j < size; ++j) {
+      A(i, j) = 1.0 / (i + j + 1);
+    }
   }
   return A.sparseView();
 }
@@ -140,7 +144,9 @@ inline void expect_agrees_with_dense(LinearSolver& solver, const SparseMatrix& A
   const auto n = static_cast<int>(A.rows());
   for (const System system : {System::kPlain, System::kTransposed}) {
     Eigen::MatrixXd dense(A);
-    if (system == System::kTransposed) dense.transposeInPlace();
+    if (system == System::kTransposed) {
+      dense.transposeInPlace();
+    }
     for (const int count : {5, 1}) {
       const Eigen::MatrixXd B = random_dense(n, count, 11);
       const Eigen::MatrixXd expected = dense.partialPivLu().solve(B);
@@ -198,7 +204,9 @@ inline void expect_the_same_in_two_threads(Maker make, const SolverOptions& opti
   };
   const Eigen::VectorXd alone = solution();
   const auto count_others = [&](int& others) {
-    for (int repeat = 0; repeat < repeats; ++repeat) others += solution() == alone ? 0 : 1;
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+      others += solution() == alone ? 0 : 1;
+    }
   };
   int first = 0;
   int second = 0;

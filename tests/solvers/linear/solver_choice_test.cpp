@@ -68,7 +68,9 @@ TEST(ChooseSolver, GoesByTheStructure) {
       const auto suite = available_solvers();
       const bool has = std::any_of(suite.begin(), suite.end(),
                                    [&](const SolverEntry& entry) { return entry.name == name; });
-      if (expected.empty() && has) expected = name;
+      if (expected.empty() && has) {
+        expected = name;
+      }
     }
     EXPECT_EQ(choice.name, expected) << name_of(wish.structure) << ' ' << wish.blocks[0];
     EXPECT_FALSE(choice.reason.empty());

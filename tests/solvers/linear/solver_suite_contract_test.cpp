@@ -30,7 +30,9 @@ struct Case {
 std::vector<Case> every_case() {
   std::vector<Case> cases;
   for (const SolverEntry& entry : available_solvers()) {
-    for (const Structure structure : entry.structures) cases.push_back({entry, structure});
+    for (const Structure structure : entry.structures) {
+      cases.push_back({entry, structure});
+    }
   }
   return cases;
 }
@@ -67,7 +69,9 @@ class Contract : public ::testing::TestWithParam<Case> {
     for (const std::vector<int>& blocks : kLayouts) {
       for (const Ordering ordering : entry().orderings) {
         for (const IndexWidth width : {IndexWidth::k32, IndexWidth::k64}) {
-          if (width == IndexWidth::k64 && !entry().has_64_bit_indices) continue;
+          if (width == IndexWidth::k64 && !entry().has_64_bit_indices) {
+            continue;
+          }
           SCOPED_TRACE(concat(blocks.size(), " blocks, the first of ", blocks[0], ", ordering ",
                               name_of(ordering), width == IndexWidth::k64 ? ", 64 bits" : ""));
           const auto solver = make(blocks, ordering, width);
@@ -115,7 +119,9 @@ TEST_P(Contract, AnalysesOnceForManyFactorisations) {
     SparseMatrix A = matrix(blocks, 1);
     solver.analyze(A);
     for (const double factor : {1.0, 3.0, 0.125}) {
-      for (Eigen::Index k = 0; k < A.nonZeros(); ++k) A.valuePtr()[k] *= factor;
+      for (Eigen::Index k = 0; k < A.nonZeros(); ++k) {
+        A.valuePtr()[k] *= factor;
+      }
       solver.factorize(A);
       expect_solves(solver, A, bound());
     }
@@ -180,7 +186,9 @@ TEST_P(Contract, SolvesAdjointSystems) {
 void cut_out(SparseMatrix& A, int unknown) {
   for (Eigen::Index j = 0; j < A.cols(); ++j) {
     for (SparseMatrix::InnerIterator entry(A, j); entry; ++entry) {
-      if (entry.row() == unknown || j == unknown) entry.valueRef() = 0.0;
+      if (entry.row() == unknown || j == unknown) {
+        entry.valueRef() = 0.0;
+      }
     }
   }
 }
@@ -284,9 +292,15 @@ TEST_P(Contract, WorksInThreadsWithASolverEach) {
     }
   };
   std::vector<std::thread> threads;
-  for (unsigned seed = 0; seed < worst.size(); ++seed) threads.emplace_back(work, seed);
-  for (std::thread& thread : threads) thread.join();
-  for (const double error : worst) EXPECT_LE(error, bound());
+  for (unsigned seed = 0; seed < worst.size(); ++seed) {
+    threads.emplace_back(work, seed);
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  for (const double error : worst) {
+    EXPECT_LE(error, bound());
+  }
 }
 
 }  // namespace

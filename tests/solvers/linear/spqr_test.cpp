@@ -74,7 +74,9 @@ TEST(Spqr, FillsAnArrowLessByMinimumDegree) {
 TEST(Spqr, DoesNotCareForTheUnitsOfRowsAndColumns) {
   const SparseMatrix A = random_sparse(40, 3, 5);
   Eigen::VectorXd scale(A.rows());
-  for (int i = 0; i < scale.size(); ++i) scale[i] = std::pow(10.0, i % 7 - 3);
+  for (int i = 0; i < scale.size(); ++i) {
+    scale[i] = std::pow(10.0, i % 7 - 3);
+  }
   for (const System system : {System::kPlain, System::kTransposed}) {
     for (const bool rows : {true, false}) {
       const SparseMatrix B =
@@ -90,7 +92,9 @@ TEST(Spqr, DoesNotCareForTheUnitsOfRowsAndColumns) {
     }
   }
   Eigen::VectorXd extreme(A.rows());
-  for (int i = 0; i < extreme.size(); ++i) extreme[i] = std::pow(10.0, 30 * (i % 3 - 1));
+  for (int i = 0; i < extreme.size(); ++i) {
+    extreme[i] = std::pow(10.0, 30 * (i % 3 - 1));
+  }
   EXPECT_NO_THROW((void)factorized(make_spqr, {}, SparseMatrix(extreme.asDiagonal() * A)));
   Eigen::VectorXd one_tiny = Eigen::VectorXd::Ones(A.cols());
   one_tiny[5] = 1e-20;
@@ -124,7 +128,9 @@ TEST(Spqr, RefusesADependenceThatRoundingHides) {
   Eigen::MatrixXd dense(random_block_lower({12}, 8));
   dense.col(7).setZero();
   dense.col(7) = dense.rowwise().sum();
-  for (int j = 0; j < 12; ++j) dense.col(j) *= std::pow(2.0, 5 * (j % 5 - 2));
+  for (int j = 0; j < 12; ++j) {
+    dense.col(j) *= std::pow(2.0, 5 * (j % 5 - 2));
+  }
   const SparseMatrix A = dense.sparseView();
   for (const Ordering ordering : kOrderingsOfSpqr) {
     EXPECT_THROW((void)factorized(make_spqr, options_of(ordering), A), NumericalFailure);

@@ -19,7 +19,9 @@ inline void append_block(const std::vector<int>& sizes, std::size_t b, std::size
   const int row = std::accumulate(sizes.begin(), sizes.begin() + static_cast<int>(b), 0);
   const int column = std::accumulate(sizes.begin(), sizes.begin() + static_cast<int>(a), 0);
   for (int j = 0; j < block.cols(); ++j) {
-    for (int i = 0; i < block.rows(); ++i) entries.emplace_back(row + i, column + j, block(i, j));
+    for (int i = 0; i < block.rows(); ++i) {
+      entries.emplace_back(row + i, column + j, block(i, j));
+    }
   }
 }
 
@@ -62,14 +64,18 @@ inline SparseMatrix random_quasi_definite(const std::vector<int>& sizes, unsigne
   SparseMatrix A = random_definite(sizes, seed);
   std::vector<int> is_multiplier;
   for (const int size : sizes) {
-    for (int i = 0; i < size; ++i) is_multiplier.push_back(2 * i >= size + size % 2 ? 1 : 0);
+    for (int i = 0; i < size; ++i) {
+      is_multiplier.push_back(2 * i >= size + size % 2 ? 1 : 0);
+    }
   }
   for (Eigen::Index j = 0; j < A.cols(); ++j) {
     for (SparseMatrix::InnerIterator entry(A, j); entry; ++entry) {
       const int multipliers = is_multiplier[static_cast<std::size_t>(entry.row())] +
                               is_multiplier[static_cast<std::size_t>(j)];
       // Of a definite matrix the diagonal blocks are definite; one is negated.
-      if (multipliers == 2) entry.valueRef() = -entry.value();
+      if (multipliers == 2) {
+        entry.valueRef() = -entry.value();
+      }
     }
   }
   return A;

@@ -45,11 +45,15 @@ TEST(GradientCheck, NamesTheWrongDerivativeAndSeesTheFirstOrder) {
 TEST(GradientCheck, LeavesOutStepsThatCannotBeEvaluated) {
   Rosenbrock program;
   program.on_objective = [](const Eigen::VectorXd& x) {
-    if (x[0] < -1.2 - 5e-6) throw EvaluationError("stalled");
+    if (x[0] < -1.2 - 5e-6) {
+      throw EvaluationError("stalled");
+    }
   };
   EXPECT_LT(check_gradients(program, Eigen::Vector2d(-1.2, 1.0)).gap, 1e-8);
   program.on_objective = [](const Eigen::VectorXd& x) {
-    if (x[0] != -1.2) throw EvaluationError("stalled");
+    if (x[0] != -1.2) {
+      throw EvaluationError("stalled");
+    }
   };
   EXPECT_EQ(message_of<EvaluationError>(
                 [&] { (void)check_gradients(program, Eigen::Vector2d(-1.2, 1.0)); }),

@@ -120,7 +120,9 @@ TEST(IpoptWarmStart, TakesAPointWithoutMultipliers) {
   options.warm_start = PrimalDualPoint{.x = Eigen::Vector4d(1.1, 4.5, 4.0, 1.4)};
   double first_objective = 0.0;
   options.on_iteration = [&](const IterationInfo& info) {
-    if (info.iteration == 0) first_objective = info.objective;
+    if (info.iteration == 0) {
+      first_objective = info.objective;
+    }
     return true;
   };
   const IpoptResult result = solve_with_ipopt(program, options);

@@ -75,7 +75,9 @@ TEST(Ipopt, ShortensTheStepWhereAPointCannotBeEvaluated) {
   Rosenbrock program;
   int failures = 0;
   program.on_objective = [&](const Eigen::VectorXd& x) {
-    if (x[1] >= -0.05 && x[0] <= 1.05) return;
+    if (x[1] >= -0.05 && x[0] <= 1.05) {
+      return;
+    }
     ++failures;
     throw EvaluationError("the simulation failed");
   };
@@ -122,7 +124,9 @@ TEST(Ipopt, RethrowsWhatTheProgramThrows) {
   Rosenbrock program;
   int calls = 0;
   program.on_objective = [&](const Eigen::VectorXd&) {
-    if (++calls == 5) throw std::out_of_range("a bug");
+    if (++calls == 5) {
+      throw std::out_of_range("a bug");
+    }
   };
   EXPECT_EQ(message_of<std::out_of_range>([&] { (void)solve_with_ipopt(program); }), "a bug");
   EXPECT_EQ(calls, 5) << "nothing may be evaluated after an exception";
@@ -132,7 +136,9 @@ TEST(Ipopt, RethrowsWhatTheCallbackThrows) {
   Rosenbrock program;
   IpoptOptions options;
   options.on_iteration = [](const IterationInfo& info) -> bool {
-    if (info.iteration == 2) throw std::runtime_error("disk full");
+    if (info.iteration == 2) {
+      throw std::runtime_error("disk full");
+    }
     return true;
   };
   EXPECT_EQ(message_of<std::runtime_error>([&] { (void)solve_with_ipopt(program, options); }),
@@ -167,8 +173,12 @@ TEST(Ipopt, KeepsTheBestFeasiblePointWhenStopped) {
     stop = false;
     options.on_iteration = [&](const IterationInfo& info) {
       // Late enough for feasible points, before convergence.
-      if (info.primal_infeasibility > 1e-7 || info.iteration < 3) return true;
-      if (by_flag) stop = true;
+      if (info.primal_infeasibility > 1e-7 || info.iteration < 3) {
+        return true;
+      }
+      if (by_flag) {
+        stop = true;
+      }
       return by_flag;
     };
     const IpoptResult result = solve_with_ipopt(program, options);

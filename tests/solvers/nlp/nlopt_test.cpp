@@ -97,7 +97,9 @@ TEST(Nlopt, RefusesOptionsOutOfTheirRange) {
 TEST(Nlopt, ShortensTheStepWhereAPointCannotBeEvaluated) {
   Rosenbrock program;
   program.on_objective = [](const Eigen::VectorXd& x) {
-    if (x[1] < -0.05 || x[0] > 1.05) throw EvaluationError("the simulation failed");
+    if (x[1] < -0.05 || x[0] > 1.05) {
+      throw EvaluationError("the simulation failed");
+    }
   };
   const NloptResult result = minimise_with_nlopt(program);
   EXPECT_TRUE(result.converged()) << result.message;
@@ -122,7 +124,9 @@ TEST(Nlopt, RethrowsWhatProgramAndCallbackThrow) {
     Rosenbrock program;
     int calls = 0;
     program.on_objective = [&](const Eigen::VectorXd&) {
-      if (++calls == 5) throw std::out_of_range("a bug");
+      if (++calls == 5) {
+        throw std::out_of_range("a bug");
+      }
     };
     NloptOptions options{.algorithm = algorithm};
     const auto run = [&] { (void)minimise_with_nlopt(program, options); };
@@ -130,7 +134,9 @@ TEST(Nlopt, RethrowsWhatProgramAndCallbackThrow) {
     EXPECT_EQ(calls, 5) << "nothing may be evaluated after an exception";
     program.on_objective = nullptr;
     options.on_evaluation = [](const NloptEvaluation& e) -> bool {
-      if (e.evaluation == 3) throw std::runtime_error("disk full");
+      if (e.evaluation == 3) {
+        throw std::runtime_error("disk full");
+      }
       return true;
     };
     EXPECT_EQ(message_of<std::runtime_error>(run), "disk full");
