@@ -75,12 +75,14 @@ struct PairStiffness {
   Eigen::Matrix<S, 6, 3> E_a, E_b;
 };
 
+/// What else to compute of a point that touches: nothing, or its derivatives too.
+enum class TouchDetail { kForce, kDerivatives };
+
 /// Force of a point that touches.
 ///
 /// @param index, x_A  the point and its place in A's frame; index −1: a ball's centre, whose
 ///                    deepest point (radius below it) touches
 /// @param how         what else to fill in: gradient, dn_dx and the law's derivatives, or nothing
-enum class TouchDetail { kForce, kDerivatives };
 template <Scalar S>
 void compute_touch(const Contact& contact, const LawNumbers<S>& numbers,
                    const SurfaceDistance<S>& surface, const PairMotion<S>& motion, int index,

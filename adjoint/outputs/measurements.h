@@ -18,7 +18,7 @@ namespace hbar {
 template <Scalar S>
 class Measurements {
  public:
-  /// @param measurements  that the model can have (check_measurements)
+  /// @param measurements  measurements that the model can have (check_measurements)
   Measurements(const Model& model, std::vector<Measurement> measurements);
 
   /// Rows of all measurements together.

@@ -129,103 +129,6 @@ Simulator::~Simulator() = default;
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
-bool Simulator::solve_stage(Trajectory& trajectory, int stage, RolloutReport& report) {
-  const Stage& row = trajectory.timeline.stage(stage);
-  StageSystem& system = work_->system;
-  StagePoint<double>& point = system.point;
-  work_->history.gather(trajectory, stage, system.qdot_past, system.a_past, point.start);
-  point.rate = row.rate;
-  point.u = trajectory.inputs.u.col(row.step);
-  // Predictor: the acceleration of the last stage goes on (zero before there is one).
-  const bool has_last = stage > 1;
-  work_->x = -system.a_past / row.rate - system.qdot_past;
-  if (has_last) {
-    work_->x += work_->last_a / row.rate;
-  }
-  work_->x /= row.rate;
-  work_->predicted = work_->x;
-  const solvers::NewtonReport newton =
-      work_->newton.solve(system, horizon_.options().newton, work_->x);
-  report.last_newton = newton;
-  if (newton.converged() && strays(horizon_.model(), work_->predicted, work_->x)) {
-    report.last_newton.status = solvers::NewtonStatus::kStrayed;
-  }
-  if (!report.last_newton.converged()) {
-    return false;
-  }
-  point.q = work_->x;
-  History::set_rates(system.qdot_past, system.a_past, point);
-  work_->last_a = point.a;
-  trajectory.q.col(stage) = point.q;
-  trajectory.qdot.col(stage) = point.qdot;
-  trajectory.newton[static_cast<std::size_t>(stage)] = newton;
-  if (horizon_.keeps_factors()) {
-    trajectory.factors[static_cast<std::size_t>(stage)] = system.lu;
-  }
-  return true;
-}
-
-bool Simulator::advance(Trajectory& trajectory, int step, double h, int depth,
-                        RolloutReport& report) {
-  const int kept = trajectory.timeline.stage_count();
-  trajectory.timeline.append(horizon_.integrator(), step, h);
-  const int count = trajectory.timeline.stage_count();
-  if (count > trajectory.q.cols()) {
-    const int columns = std::max(count, static_cast<int>(trajectory.q.cols() * 3 / 2));
-    trajectory.q.conservativeResize(Eigen::NoChange, columns);
-    trajectory.qdot.conservativeResize(Eigen::NoChange, columns);
-  }
-  trajectory.newton.resize(static_cast<std::size_t>(count));
-  if (horizon_.keeps_factors()) {
-    trajectory.factors.resize(static_cast<std::size_t>(count));
-  }
-  report.smallest_h = std::min(report.smallest_h, h);
-  for (int stage = kept; stage < count; ++stage) {
-    if (solve_stage(trajectory, stage, report)) {
-      continue;
-    }
-    trajectory.timeline.truncate(kept);
-    return depth < horizon_.options().max_halvings &&
-           advance(trajectory, step, 0.5 * h, depth + 1, report) &&
-           advance(trajectory, step, 0.5 * h, depth + 1, report);
-  }
-  switch_charts(horizon_.model(), trajectory);
-  return true;
-}
-
-/// ", deepest contact 'a-b': …" at the last iterate; empty where nothing touches.
-std::string Simulator::deepest_contact() const {
-  const ContactForces<double>& contacts = work_->system.contacts();
-  int deepest = -1;
-  for (int i = 0; i < horizon_.model().contact_count(); ++i) {
-    if (contacts.summary(i).active > 0 &&
-        (deepest < 0 || contacts.summary(i).penetration > contacts.summary(deepest).penetration)) {
-      deepest = i;
-    }
-  }
-  if (deepest < 0) {
-    return {};
-  }
-  const ContactSummary& summary = contacts.summary(deepest);
-  return concat(", deepest contact '", horizon_.model().contact(deepest).name, "' with ",
-                summary.active, " points down to ", summary.penetration, ' ',
-                length_unit(horizon_.model().units()));
-}
-
-std::string Simulator::failure_message(const Trajectory& trajectory, int step,
-                                       const RolloutReport& report) const {
-  const solvers::NewtonReport& newton = report.last_newton;
-  return concat("simulation stopped at step ", step + 1, " of ", horizon_.options().steps,
-                " (t = ", trajectory.timeline.stage(trajectory.timeline.last_stage()).time,
-                "): ", solvers::describe(newton.status), " after ", newton.iterations,
-                " iterations, |g| = ", newton.residual, " (tol ", horizon_.options().newton.tol,
-                "), largest correction in coordinate '",
-                horizon_.model().coordinate_name(newton.worst), "', smallest time step tried ",
-                report.smallest_h, deepest_contact(),
-                "; try a smaller time step, softer springs, limits, contacts or motor gains, or a "
-                "larger Newton tolerance");
-}
-
 Rollout Simulator::rollout(const Inputs& inputs) {
   horizon_.check(inputs);
   const Model& model = horizon_.model();
@@ -275,6 +178,103 @@ Rollout Simulator::rollout(const Inputs& inputs) {
   std::erase_if(trajectory.chart_switches,
                 [count](const ChartSwitch& s) { return s.stage >= count; });
   return {std::move(report), std::move(trajectory)};
+}
+
+bool Simulator::advance(Trajectory& trajectory, int step, double h, int depth,
+                        RolloutReport& report) {
+  const int kept = trajectory.timeline.stage_count();
+  trajectory.timeline.append(horizon_.integrator(), step, h);
+  const int count = trajectory.timeline.stage_count();
+  if (count > trajectory.q.cols()) {
+    const int columns = std::max(count, static_cast<int>(trajectory.q.cols() * 3 / 2));
+    trajectory.q.conservativeResize(Eigen::NoChange, columns);
+    trajectory.qdot.conservativeResize(Eigen::NoChange, columns);
+  }
+  trajectory.newton.resize(static_cast<std::size_t>(count));
+  if (horizon_.keeps_factors()) {
+    trajectory.factors.resize(static_cast<std::size_t>(count));
+  }
+  report.smallest_h = std::min(report.smallest_h, h);
+  for (int stage = kept; stage < count; ++stage) {
+    if (solve_stage(trajectory, stage, report)) {
+      continue;
+    }
+    trajectory.timeline.truncate(kept);
+    return depth < horizon_.options().max_halvings &&
+           advance(trajectory, step, 0.5 * h, depth + 1, report) &&
+           advance(trajectory, step, 0.5 * h, depth + 1, report);
+  }
+  switch_charts(horizon_.model(), trajectory);
+  return true;
+}
+
+bool Simulator::solve_stage(Trajectory& trajectory, int stage, RolloutReport& report) {
+  const Stage& row = trajectory.timeline.stage(stage);
+  StageSystem& system = work_->system;
+  StagePoint<double>& point = system.point;
+  work_->history.gather(trajectory, stage, system.qdot_past, system.a_past, point.start);
+  point.rate = row.rate;
+  point.u = trajectory.inputs.u.col(row.step);
+  // Predictor: the acceleration of the last stage goes on (zero before there is one).
+  const bool has_last = stage > 1;
+  work_->x = -system.a_past / row.rate - system.qdot_past;
+  if (has_last) {
+    work_->x += work_->last_a / row.rate;
+  }
+  work_->x /= row.rate;
+  work_->predicted = work_->x;
+  const solvers::NewtonReport newton =
+      work_->newton.solve(system, horizon_.options().newton, work_->x);
+  report.last_newton = newton;
+  if (newton.converged() && strays(horizon_.model(), work_->predicted, work_->x)) {
+    report.last_newton.status = solvers::NewtonStatus::kStrayed;
+  }
+  if (!report.last_newton.converged()) {
+    return false;
+  }
+  point.q = work_->x;
+  History::set_rates(system.qdot_past, system.a_past, point);
+  work_->last_a = point.a;
+  trajectory.q.col(stage) = point.q;
+  trajectory.qdot.col(stage) = point.qdot;
+  trajectory.newton[static_cast<std::size_t>(stage)] = newton;
+  if (horizon_.keeps_factors()) {
+    trajectory.factors[static_cast<std::size_t>(stage)] = system.lu;
+  }
+  return true;
+}
+
+/// ", deepest contact 'a-b': …" at the last iterate; empty where nothing touches.
+std::string Simulator::deepest_contact() const {
+  const ContactForces<double>& contacts = work_->system.contacts();
+  int deepest = -1;
+  for (int i = 0; i < horizon_.model().contact_count(); ++i) {
+    if (contacts.summary(i).active > 0 &&
+        (deepest < 0 || contacts.summary(i).penetration > contacts.summary(deepest).penetration)) {
+      deepest = i;
+    }
+  }
+  if (deepest < 0) {
+    return {};
+  }
+  const ContactSummary& summary = contacts.summary(deepest);
+  return concat(", deepest contact '", horizon_.model().contact(deepest).name, "' with ",
+                summary.active, " points down to ", summary.penetration, ' ',
+                length_unit(horizon_.model().units()));
+}
+
+std::string Simulator::failure_message(const Trajectory& trajectory, int step,
+                                       const RolloutReport& report) const {
+  const solvers::NewtonReport& newton = report.last_newton;
+  return concat("simulation stopped at step ", step + 1, " of ", horizon_.options().steps,
+                " (t = ", trajectory.timeline.stage(trajectory.timeline.last_stage()).time,
+                "): ", solvers::describe(newton.status), " after ", newton.iterations,
+                " iterations, |g| = ", newton.residual, " (tol ", horizon_.options().newton.tol,
+                "), largest correction in coordinate '",
+                horizon_.model().coordinate_name(newton.worst), "', smallest time step tried ",
+                report.smallest_h, deepest_contact(),
+                "; try a smaller time step, softer springs, limits, contacts or motor gains, or a "
+                "larger Newton tolerance");
 }
 
 Rollout simulate(const Horizon& horizon, const Inputs& inputs) {

@@ -25,12 +25,11 @@ struct SourceLine {
   friend bool operator==(const SourceLine&, const SourceLine&) { return true; }
 };
 
-/// Integrators a scene may name.
-/// Methods of time integration, in the order of the vocabulary.
+/// Integrators a scene may name, in the order of the vocabulary.
 enum class Integrator { kBdf1, kBdf2, kSdirk2 };
 
-/// Units of a scene's numbers: centimetre and gram, or metre and kilogram; seconds in both.
-/// Unit systems, in the order of the vocabulary.
+/// Units of a scene's numbers: centimetre and gram, or metre and kilogram; seconds in both. In the
+/// order of the vocabulary.
 enum class UnitSystem { kCmG, kMKg };
 
 /// `<option>`.
@@ -81,8 +80,7 @@ enum class JointType {
   return kCounts[static_cast<std::size_t>(type)];
 }
 
-/// What a joint's placement refers to: the parent's joint frame, or the world at rest.
-/// What a joint is placed in: its parent's joint frame, or the world at rest.
+/// What a joint's placement refers to: its parent's joint frame, or the world at rest.
 enum class Frame { kLocal, kWorld };
 
 /// `<joint>`.
@@ -132,9 +130,8 @@ struct CapsuleBody {
   friend bool operator==(const CapsuleBody&, const CapsuleBody&) = default;
 };
 
-/// What a mesh's placement places: its principal frame or its file's, in the joint frame or the
-/// world.
-/// What a mesh body's pos and quat place, in the order of the vocabulary.
+/// What a mesh body's pos and quat place: its principal frame or its file's, in the joint frame or
+/// the world. In the order of the vocabulary.
 enum class MeshTransform { kBodyToJoint, kObjToJoint, kObjToWorld };
 
 /// A homogeneous solid bounded by the triangles of an OBJ file.
@@ -210,8 +207,7 @@ struct Robot {
   friend bool operator==(const Robot&, const Robot&) = default;
 };
 
-/// What a motor's control is: a force, or a position to reach.
-/// What a motor's controls are: shares of its range, or set points.
+/// What a motor's controls are: forces, as shares of its range, or positions to reach.
 enum class Control { kForce, kPosition };
 
 /// `<motor>`: one control per coordinate of its joint.
@@ -226,8 +222,7 @@ struct Motor {
   friend bool operator==(const Motor&, const Motor&) = default;
 };
 
-/// Which two shapes touch.
-/// Which element a contact was.
+/// Which two shapes touch, and so which element a contact was.
 enum class ContactKind { kGround, kGeneralPrimitive, kCuboidCuboid };
 
 /// How an element of a kind is spelled.
@@ -237,14 +232,12 @@ enum class ContactKind { kGround, kGeneralPrimitive, kCuboidCuboid };
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-/// How the normal force follows from the depth.
-/// Normal force: damping times depth, or damping alone.
+/// How the normal force is damped: in proportion to the depth, or regardless of it.
 enum class ContactLaw { kDocument, kLinear };
 
 /// Friction: bounded by a multiple of the normal force with a corner, or smoothly.
 enum class Friction { kDocument, kSmooth };
 
-/// Where the other body is pushed: at the contact point, or at its own surface.
 /// Where the second body is pushed: at the contact point, or at its own surface.
 enum class Reaction { kPoint, kSurface };
 
@@ -323,8 +316,7 @@ struct VirtualCuboid {
   friend bool operator==(const VirtualCuboid&, const VirtualCuboid&) = default;
 };
 
-/// A shape that is drawn and touches nothing.
-/// A child of `<virtual>`.
+/// A child of `<virtual>`: a shape that is drawn and touches nothing.
 struct VirtualShape {
   std::optional<std::string> name = {};
   std::variant<VirtualSphere, VirtualCuboid> shape = {};
