@@ -1,7 +1,7 @@
 #pragma once
 
-// The component hbar::study: what is done with programs that solve. Solutions in files, many
-// starts, fronts of two objectives, identification from measured data.
+// The component hbar::study: solutions in files, many starts, fronts of two objectives,
+// identification from measured data.
 
 #include "hbar/adjoint/study/identification.h"
 #include "hbar/adjoint/study/information.h"

@@ -9,13 +9,13 @@ namespace hbar {
 /// What one contact does at one instant.
 struct ContactSummary {
   int active = 0;               ///< points that touch
-  int sticking = 0;             ///< of these, points whose friction holds
+  int sticking = 0;             ///< of these, points that stick
   double penetration = 0.0;     ///< of the deepest point, length, ≥ 0
   double normal_force = 0.0;    ///< Σ f_n
   double friction_force = 0.0;  ///< Σ |friction|
 };
 
-/// A contact whose points touch, with its derivatives.
+/// A contact with touching points, and its derivatives.
 template <Scalar S>
 struct ActivePair {
   int contact = 0;
@@ -26,11 +26,12 @@ struct ActivePair {
   PairStiffness<S> stiffness;
 };
 
-/// The forces of all declared contacts of a model: wrenches on bodies, their derivatives, and
-/// what a person wants to know of them.
+/// The forces of all declared contacts of a model: wrenches on bodies, their derivatives, and a
+/// summary for the user.
 ///
-/// A pair far apart costs one distance; a point that does not touch costs one distance. Sized once
-/// and reused: evaluations allocate nothing while no more than a thousand points touch at once.
+/// A pair far apart costs one distance evaluation, and so does a point that does not touch. Sized
+/// once and reused: evaluations allocate nothing while no more than a thousand points touch at
+/// once.
 template <Scalar S>
 class ContactForces {
  public:
@@ -38,7 +39,7 @@ class ContactForces {
 
   /// Wrenches alone, at the poses and twists of `motion`.
   void evaluate(const Mechanism<S>& mechanism, const Motion<S>& motion);
-  /// The same, and what derivatives read.
+  /// The same, and what the derivatives below need.
   void linearize(const Mechanism<S>& mechanism, const Motion<S>& motion);
 
   /// Contact wrench on each link's body, world; empty if the model declares no contact.   [6]
@@ -52,25 +53,25 @@ class ContactForces {
     return {points_.data() + pair.first, pair.count};
   }
 
-  /// Adds to a column of ∂ID/∂(displacement) what contact contributes, after linearize.
+  /// Adds the contribution of contact to a column of ∂ID/∂(displacement), after linearize.
   ///
   /// @param moves    moves(link): whether the displacement moves that link's body
   /// @param D        displacement twist, world                                        [6]
-  /// @param psi_dot  Ψ̇ of formulation §3                                              [6]
+  /// @param psi_dot  Ψ̇ of doc/notation.md, "Columns"                                  [6]
   /// @param column   rows by coordinate                                               [dof]
   template <typename Moves>
   void add_displacement(const Motion<S>& motion, const Moves& moves, const Vector6<S>& D,
                         const Vector6<S>& psi_dot, Eigen::Ref<VectorX<S>> column) const;
-  /// The same of everything below a node.
+  /// The same for displacing everything below a node.
   void add_displacement_below(const Motion<S>& motion, int node, const Vector6<S>& D,
                               const Vector6<S>& psi_dot, Eigen::Ref<VectorX<S>> column) const;
 
-  /// Adds what a change of a contact's wrenches does to ID: −Jᵀ of both.
+  /// Adds the effect of a change of a contact's wrenches on ID: −Jᵀ of both.
   void add_change(const Motion<S>& motion, int contact, const PairWrenches<S>& change,
                   Eigen::Ref<VectorX<S>> column) const;
 
-  /// Transpose of add_displacement: what a weight z on the rows, given as the twist W that it gives
-  /// each link's body, makes of displacements and twists of bodies.
+  /// Transpose of add_displacement: for a weight z on the rows, given as the twists W that it
+  /// induces, computes covectors on displacements and twists of bodies.
   ///
   /// @param W  by node: Σ over its path of J_l z_l                                    [6]
   void pull_back(std::span<const Vector6<S>> W, LinkCovectors<S>& out) const;

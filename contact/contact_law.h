@@ -25,7 +25,7 @@ struct LawChoice {
 };
 [[nodiscard]] LawChoice law_of(const Contact& contact);
 
-/// The force on a contact point, and what it is made of.
+/// The force on a contact point, and its components.
 template <Scalar S>
 struct PointForce {
   Vector3<S> f;  ///< f_n n + friction, world                                  [3]
@@ -34,14 +34,14 @@ struct PointForce {
   bool sticks;   ///< friction below its bound (smooth law: |ṫ| below its width)
 };
 
-/// f as a function of distance d, normal n and relative velocity u, each varied alone.
+/// Partial derivatives of f with respect to distance d, normal n and relative velocity u.
 template <Scalar S>
 struct PointForceDerivatives {
   Vector3<S> by_d;      ///< ∂f/∂d                                   [3]
   Matrix3<S> by_n;      ///< ∂f/∂n                                   [3 x 3]
   Matrix3<S> by_u;      ///< ∂f/∂u                                   [3 x 3]
   Vector3<S> by_scale;  ///< ∂f/∂s                                   [3]
-  std::array<Vector3<S>, 4> by_coefficient;  ///< by k_n, k_t, μ, k_d              4 of [3]
+  std::array<Vector3<S>, 4> by_coefficient;  ///< ∂f/∂(k_n, k_t, μ, k_d)              4 of [3]
 };
 
 /// Force of (13), (14) on a point at distance d ≤ 0.
@@ -52,8 +52,8 @@ template <Scalar S>
 [[nodiscard]] PointForce<S> contact_force(const LawChoice& law, const LawNumbers<S>& numbers,
                                           const S& d, const Vector3<S>& n, const Vector3<S>& u);
 
-/// The same and its derivatives. Where sticking turns into sliding they are those of sticking; at
-/// rest (ṫ = 0) and at d = 0 they are finite.
+/// The same with derivatives. Where sticking turns into sliding they are those of sticking; they
+/// are finite at rest (ṫ = 0) and at d = 0.
 template <Scalar S>
 PointForce<S> contact_force(const LawChoice& law, const LawNumbers<S>& numbers, const S& d,
                             const Vector3<S>& n, const Vector3<S>& u,

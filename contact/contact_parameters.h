@@ -6,12 +6,12 @@
 
 namespace hbar {
 
-/// Visits how touching points change with a set's parameters at fixed motion, after
+/// Visits the changes of touching points with a set's parameters at fixed motion, after
 /// contacts.linearize: contact points (III), contact scale (VI), coefficients and sizes.
 ///
-/// @param visit  visit(index in p, ActivePair, TouchingPoint, PointChange): one share of
-///               ∂(point)/∂p; a parameter may be visited any number of times, and what touches
-///               nothing is not
+/// @param visit  visit(index in p, ActivePair, TouchingPoint, PointChange): one contribution to
+///               ∂(point)/∂p; a parameter may be visited any number of times, or never if it
+///               affects no touching point
 template <Scalar S, typename Visit>
 void for_each_point_change(const ContactForces<S>& contacts, const Applied<S>& applied,
                            const Visit& visit) {
@@ -86,9 +86,9 @@ void for_each_point_change(const ContactForces<S>& contacts, const Applied<S>& a
   }
 }
 
-/// The same of contact wrenches.
+/// The same for contact wrenches.
 ///
-/// @param visit  visit(index in p, contact, PairWrenches): one share of ∂(wrenches)/∂p
+/// @param visit  visit(index in p, contact, PairWrenches): one contribution to ∂(wrenches)/∂p
 template <Scalar S, typename Visit>
 void for_each_contact_change(const ContactForces<S>& contacts, const Applied<S>& applied,
                              const Visit& visit) {

@@ -11,7 +11,7 @@ namespace hbar {
 template <Scalar S>
 struct SurfaceSample {
   S d;                  ///< φ, length; negative inside
-  Vector3<S> gradient;  ///< ∇φ: n, but for a distance known by data                [3]
+  Vector3<S> gradient;  ///< ∇φ: n, except for a distance given by data             [3]
   Vector3<S> n;         ///< contact normal, unit                                   [3]
   Matrix3<S> dn_dx;     ///< ∂n/∂x, 1/length                                        [3 x 3]
 };
@@ -23,18 +23,18 @@ struct SizeRate {
   Vector3<S> n;  ///< ∂n/∂size                                                       [3]
 };
 
-/// The distance side of one contact with parameters applied.
+/// The surface side of one contact, with parameters applied.
 ///
-/// Exact, inside and outside. On the edges of a distance (medial planes of a cuboid, a ball's
-/// centre) derivatives are those of one side. Cheap to copy; borrows a DistanceField.
+/// Exact, inside and outside. Where the distance has kinks (medial planes of a cuboid, a ball's
+/// centre) the derivatives are those of one side. Cheap to copy; borrows a DistanceField.
 template <Scalar S>
 class SurfaceDistance {
  public:
-  /// @param shape  of the body that OwnShape refers to; not read otherwise
-  /// @param sizes  present sizes of that shape, as sizes_of lists them               [3]
+  /// @param shape  of the body that OwnShape refers to; otherwise not read
+  /// @param sizes  current sizes of that shape, as sizes_of lists them               [3]
   SurfaceDistance(const ContactSurface& surface, const Shape& shape, const Vector3<S>& sizes);
 
-  /// Positive only if x is farther than that outside; φ itself wherever φ ≤ 0.
+  /// A lower bound of φ: positive only if x is at least that far outside; equals φ wherever φ ≤ 0.
   [[nodiscard]] double lower_bound(const Eigen::Vector3d& x) const;
   /// Whether a point at lower_bound d is in contact: d < 0, on a plane also d = 0.
   [[nodiscard]] bool touches(double d) const {
@@ -61,7 +61,7 @@ class SurfaceDistance {
   const DistanceField* field_ = nullptr;
 };
 
-// In the header: it is asked for every point and every cluster of them.
+// Inline: called for every point and every cluster of points.
 template <Scalar S>
 inline double SurfaceDistance<S>::lower_bound(const Eigen::Vector3d& x) const {
   switch (kind_) {

@@ -8,7 +8,7 @@ namespace hbar {
 
 /// Readings of a model's tactile sensors, three per point in order: the contact force of (13), (14)
 /// on the point along its first and its second shear direction, and −force along their cross
-/// product. Points feel every body that some contact of the model has as its distance side, but
+/// product. Points sense every body that is the surface side of some contact of the model, except
 /// their own; their forces act on nothing.
 ///
 /// Borrows the model. Sized once, reused: nothing is allocated while no more than a thousand points
@@ -18,7 +18,7 @@ class TactileReadings {
  public:
   explicit TactileReadings(const Model& model);
 
-  /// Finds what touches, once per instant, before the following.
+  /// Finds what touches. Call it once per instant, before the functions below.
   ///
   /// @param motion  poses and twists                                             (a is not read)
   void linearize(const Mechanism<S>& mechanism, const Motion<S>& motion);
@@ -26,11 +26,11 @@ class TactileReadings {
   /// @param out  a sensor's readings, force                                 [3 x its points]
   void read(int sensor, Eigen::Ref<VectorX<S>> out) const;
 
-  /// Transposed derivative: weights on a sensor's readings are added as covectors on bodies, and as
-  /// gradient by the parameters that bend contact at fixed motion.
+  /// Transposed derivative: for weights on a sensor's readings, adds covectors on bodies, and the
+  /// gradient with respect to the parameters that change contact at fixed motion.
   ///
   /// @param y       weights                                                 [3 x its points]
-  /// @param grad_p  gradient by the set's parameters                             [set.size()]
+  /// @param grad_p  gradient with respect to the set's parameters                [set.size()]
   void pull_back(int sensor, const VectorView<S>& y, const Applied<S>& applied,
                  LinkPullback<S>& links, Eigen::Ref<VectorX<S>> grad_p) const;
 

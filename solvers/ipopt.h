@@ -1,6 +1,6 @@
 #pragma once
 
-// The component hbar::ipopt: Ipopt on any nonlinear program, and what to ask of its results.
+// The component hbar::ipopt: Ipopt on any nonlinear program, and diagnosis of its results.
 
 #include "hbar/solvers/nlp/diagnosis.h"
 #include "hbar/solvers/nlp/ipopt.h"

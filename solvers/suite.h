@@ -1,6 +1,6 @@
 #pragma once
 
-// The component hbar::suite: every linear solver by its name, and what to compare them by.
+// The component hbar::suite: every linear solver by name, and measures for comparing them.
 
 #include "hbar/solvers/linear/accuracy.h"
 #include "hbar/solvers/linear/solver_catalogue.h"

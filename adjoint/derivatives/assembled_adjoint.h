@@ -7,8 +7,9 @@
 
 namespace hbar {
 
-/// The gradient (20), (21) by its matrices: H̄ᵀ z̄ = ȳ with any sparse solver, then
-/// ∂Ψ/∂p − z̄ᵀ ∂ḡ/∂p. What AdjointSweep does without them, for comparing solvers and as a witness.
+/// The gradient (20), (21) from assembled matrices: H̄ᵀ z̄ = ȳ with any sparse solver, then
+/// ∂Ψ/∂p − z̄ᵀ ∂ḡ/∂p. AdjointSweep computes the same without forming them; this class serves to
+/// compare solvers and as an independent check.
 ///
 /// Holds its workspace for one horizon and belongs to one thread at a time.
 class AssembledAdjoint {
@@ -16,7 +17,7 @@ class AssembledAdjoint {
   /// @param factory  of the solver for H̄; null means block substitution
   explicit AssembledAdjoint(const Horizon& horizon, solvers::SolverFactory factory = nullptr);
 
-  /// @param trajectory  whole, of this horizon
+  /// @param trajectory  complete, of this horizon
   /// @throws NumericalFailure if H̄ is singular or the residual is too large
   [[nodiscard]] Gradient gradient(const Trajectory& trajectory, const Objective& objective);
 
@@ -37,7 +38,7 @@ class AssembledAdjoint {
   Eigen::VectorXd z_bar_;
 };
 
-/// dΨ of a trajectory by the assembled H̄ and a solver of choice: one AssembledAdjoint.
+/// dΨ of a trajectory from the assembled H̄ and a solver of your choice: one AssembledAdjoint.
 ///
 ///     gradient(horizon, trajectory, objective, solver_factory("umfpack"))
 ///

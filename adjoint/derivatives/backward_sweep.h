@@ -8,7 +8,8 @@
 
 namespace hbar {
 
-/// A trajectory with numbers of type S: its own, or these with slopes. Borrows everything.
+/// A trajectory with numbers of type S: its own values, or those values with slopes. Borrows
+/// everything.
 template <Scalar S>
 struct SweptTrajectory {
   const Trajectory& trajectory;
@@ -29,20 +30,21 @@ struct SweptWeights {
 };
 
 /// The adjoint of a trajectory, stage by stage from its end: H̄ᵀ z̄ = ȳ (20) by block substitution
-/// and the contraction (21), without forming H̄ or ∂ḡ/∂p. With dual numbers it is the second adjoint
-/// of formulation §5. How a stage's block is solved is its caller's.
+/// and the contraction (21), without forming H̄ or ∂ḡ/∂p. With dual numbers it is the second
+/// adjoint (doc/formulations.md). The caller decides how a stage's block is solved.
 ///
 /// Holds its workspace for one horizon and belongs to one thread at a time.
 template <Scalar S>
 class BackwardSweep {
  public:
-  /// Solves H_ssᵀ z = y of stage s, where `stage` is linearised, and leaves it pulled back by z.
+  /// Solves H_ssᵀ z = y for stage s, at which `stage` is linearised, and leaves `stage` pulled back
+  /// by z.
   using SolveBlock =
       std::function<void(int s, const VectorX<S>& y, StageResidual<S>& stage, VectorX<S>& z)>;
 
   explicit BackwardSweep(Horizon horizon);
 
-  /// Sweeps; read the results below.
+  /// Runs the sweep; the accessors below then give the results.
   void run(const SweptTrajectory<S>& at, const SweptWeights<S>& weights, const SolveBlock& solve);
 
   // d(weights·values) by each input, after run().

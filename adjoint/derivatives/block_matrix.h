@@ -35,15 +35,15 @@ class BlockMatrix {
   BlockMatrix() = default;
 
   /// @param block_rows, block_columns  counts of blocks
-  /// @param blocks   (row, column) of each, in the order set_block will name them by; within a
-  ///                 column ascending by row
+  /// @param blocks   (row, column) of each; set_block refers to them by this order; within a column
+  ///                 ascending by row
   /// @param pattern  of one block, by column                                     [dof]
   BlockMatrix(int block_rows, int block_columns, const std::vector<std::pair<int, int>>& blocks,
               const std::vector<std::vector<int>>& pattern);
 
   /// Overwrites the values of a block.
   ///
-  /// @param index  as in the constructor's list
+  /// @param index  position in the constructor's list
   /// @param dense  entries outside the pattern are not read                    [dof x dof]
   void set_block(std::size_t index, const Eigen::Ref<const Eigen::MatrixXd>& dense);
 

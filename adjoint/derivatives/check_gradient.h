@@ -7,7 +7,7 @@
 
 namespace hbar {
 
-/// How check_gradient probes, and what it accepts.
+/// How check_gradient tests a gradient, and what it accepts.
 struct GradientCheckOptions {
   int directions = 3;              ///< random directions per class
   unsigned seed = 1;               ///< of the directions
@@ -16,7 +16,7 @@ struct GradientCheckOptions {
   double dot_bound = 1e-12;        ///< on the adjoint-tangent gap
 };
 
-/// One class of inputs, checked along random directions of its own.
+/// One class of inputs, checked along its own random directions.
 struct GradientCheckRow {
   std::string name;             ///< a parameter kind, "controls", "initial position", …
   int size = 0;                 ///< scalars in the class
@@ -33,14 +33,14 @@ struct GradientCheckReport {
   std::vector<GradientCheckRow> rows;
 
   [[nodiscard]] bool passed() const;
-  /// A table for people, a line per class.
+  /// A readable table, one line per class.
   [[nodiscard]] std::string table() const;
 };
 
-/// Proof on call: per class of inputs, the adjoint gradient against central differences of whole
-/// simulations, the order of the Taylor remainder, and tangents by an independent assembly.
+/// Self-check: for each class of inputs, compares the adjoint gradient with central differences of
+/// whole simulations, the order of the Taylor remainder, and tangents from an independent assembly.
 ///
-/// Newton is tightened for it. Costs some forty simulations per class and direction.
+/// Tightens the Newton tolerance for it. Costs about forty simulations per class and direction.
 ///
 /// @throws NumericalFailure if the nominal simulation does not converge
 [[nodiscard]] GradientCheckReport check_gradient(const Problem& problem,

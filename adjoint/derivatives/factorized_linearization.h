@@ -8,15 +8,15 @@ namespace hbar {
 
 class Timeline;
 
-/// The linear system of a trajectory, ready to be solved with: matrices by Linearizer, H̄ factorised
-/// by any solver, its pattern analysed once per timeline (in practice: once).
+/// The linear system of a trajectory, ready to solve: matrices from Linearizer, H̄ factorised by
+/// any solver, its pattern analysed once per timeline (in practice: once).
 class FactorizedLinearization {
  public:
   /// @param factory  of the solver for H̄; null means block substitution
   explicit FactorizedLinearization(const Horizon& horizon, solvers::SolverFactory factory = nullptr)
       : horizon_(horizon), linearizer_(horizon), solver_(std::move(factory)) {}
 
-  /// @param trajectory  whole, of this horizon
+  /// @param trajectory  complete, of this horizon
   /// @returns  valid until the next call
   /// @throws NumericalFailure naming the stage and the coordinate where H̄ is singular
   const Linearization& update(const Trajectory& trajectory);

@@ -21,9 +21,10 @@ struct Gradient {
 /// The adjoint of a trajectory, swept backward stage by stage: H̄ᵀ z̄ = ȳ (20) by block substitution
 /// and the contraction (21), without forming H̄ or ∂ḡ/∂p.
 ///
-/// Each stage's block system H_ssᵀ z = y is solved with the factors that Newton left there, a step
-/// away from the solution, and refined against the exact block until its residual is at rounding;
-/// where that does not converge, or factors were not kept, the block is factorised anew.
+/// Each stage's block system H_ssᵀ z = y is solved with the factors that Newton left behind, one
+/// step short of the solution, and refined against the exact block until the residual is at
+/// rounding level; where that does not converge, or no factors were kept, the block is factorised
+/// again.
 ///
 /// Holds its workspace for one horizon and belongs to one thread at a time.
 class AdjointSweep {
@@ -33,7 +34,7 @@ class AdjointSweep {
   AdjointSweep(AdjointSweep&&) noexcept;
   AdjointSweep& operator=(AdjointSweep&&) noexcept;
 
-  /// @param trajectory  whole, of this horizon
+  /// @param trajectory  complete, of this horizon
   /// @throws NumericalFailure if a stage's block is singular or its residual stays above 1e-11
   [[nodiscard]] Gradient gradient(const Trajectory& trajectory, const Objective& objective);
 
@@ -41,12 +42,11 @@ class AdjointSweep {
   [[nodiscard]] Gradient pull_back(const Trajectory& trajectory,
                                    const TrajectoryPartials& partials);
 
-  /// z̄ of the last sweep: how Ψ answers to a change of each stage's residual.
-  /// [dof x stages − 1]
+  /// z̄ of the last sweep: the sensitivity of Ψ to each stage's residual. [dof x stages − 1]
   [[nodiscard]] const Eigen::MatrixXd& adjoint() const;
   /// Largest relative residual ‖y − H_ssᵀ z‖ / (‖y‖ + …) of the last sweep's stages.
   [[nodiscard]] double worst_residual() const;
-  /// How many stages of the last sweep had to be factorised anew.
+  /// How many stages of the last sweep had to be factorised again.
   [[nodiscard]] int refactorized() const;
 
  private:

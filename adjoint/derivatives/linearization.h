@@ -11,7 +11,7 @@ class Horizon;
 struct Trajectory;
 
 /// The trajectory's linear system: ḡ(q̄, p, u, q₀, q̇₀) = 0 differentiated, as compressed sparse
-/// columns. Row block s − 1 belongs to stage s; so does column block s − 1 of H.
+/// columns. Row block s − 1 and column block s − 1 of H belong to stage s.
 struct Linearization {
   BlockMatrix H;                ///< H̄ = ∂ḡ/∂q̄, block lower triangular     [m x m]
   solvers::SparseMatrix dg_dp;  ///< ∂ḡ/∂p                                  [m x parameters]
@@ -30,7 +30,7 @@ class Linearizer {
   Linearizer(Linearizer&&) noexcept;
   Linearizer& operator=(Linearizer&&) noexcept;
 
-  /// @param trajectory  whole, of this horizon
+  /// @param trajectory  complete, of this horizon
   /// @returns  valid until the next call
   const Linearization& linearize(const Trajectory& trajectory);
 

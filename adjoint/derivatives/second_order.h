@@ -8,15 +8,15 @@
 
 namespace hbar {
 
-/// Second derivatives of a trajectory without a Hessian: tangent and second adjoint (formulation
-/// §5), both by dual numbers of one direction,
+/// Second derivatives of a trajectory without forming a Hessian: the tangent and the second adjoint
+/// (doc/formulations.md), both by dual numbers along one direction,
 ///
 ///     H̄ δq̄ = −δḡ,     H̄ᵀ δz̄ = δȳ − (δH̄)ᵀ z̄,
 ///
-/// stage by stage, contact included. Of a weighted sum Σ y·values it gives how its gradient moves
-/// with the inputs, and with y where y moves too.
+/// stage by stage, contact included. For a weighted sum Σ y·values they give how its gradient
+/// changes with the inputs, and with y if y changes too.
 ///
-/// A point is set once; then each direction costs one push_forward and one product. Holds its
+/// Set the point once; each direction then costs one push_forward and one product. Holds its
 /// workspace for one horizon and belongs to one thread at a time.
 class SecondOrderSweep {
  public:
@@ -25,24 +25,24 @@ class SecondOrderSweep {
   SecondOrderSweep(SecondOrderSweep&&) noexcept;
   SecondOrderSweep& operator=(SecondOrderSweep&&) noexcept;
 
-  /// Takes a trajectory and weights y on its values: one adjoint sweep, and the factors of every
-  /// stage's block.
+  /// Takes a trajectory and weights y on its values. Costs one adjoint sweep and a factorisation of
+  /// every stage's block.
   ///
-  /// @param trajectory  whole, of this horizon; must outlive the products
+  /// @param trajectory  complete, of this horizon; must outlive the products
   /// @returns           d(y·values)/d(inputs), without the value
   /// @throws NumericalFailure as AdjointSweep::pull_back
   const Gradient& set_point(const Trajectory& trajectory, const TrajectoryPartials& weights);
 
-  /// Tangent of the trajectory's values along a direction of the inputs, which the next product
-  /// takes too.
+  /// Tangent of the trajectory's values along a direction of the inputs; the next product uses the
+  /// same direction.
   ///
   /// @param direction  shaped like the inputs
   /// @returns          valid until the next call
   const ValueTangent& push_forward(const Inputs& direction);
 
-  /// δ of d(y·values)/d(inputs) along the direction pushed forward last.
+  /// Change of d(y·values)/d(inputs) along the direction of the last push_forward.
   ///
-  /// @param weights_tangent  δy along it; null means that y is constant
+  /// @param weights_tangent  δy along that direction; null means that y is constant
   /// @returns                valid until the next call
   const Gradient& product(const TrajectoryPartials* weights_tangent = nullptr);
 
@@ -59,7 +59,7 @@ class HessianProduct {
   /// @throws InvalidInput if a term of the objective has no second partials, naming it
   HessianProduct(const Horizon& horizon, Objective objective);
 
-  /// @param trajectory  whole, of this horizon; must outlive the products
+  /// @param trajectory  complete, of this horizon; must outlive the products
   /// @returns           Ψ and its gradient there
   const Gradient& set_point(const Trajectory& trajectory);
 

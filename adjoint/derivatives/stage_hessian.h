@@ -8,8 +8,8 @@
 
 namespace hbar {
 
-/// Second derivatives at one stage. Letters name by what: coordinates q, rates v, accelerations a,
-/// controls u, design variables d, and sq, sv those of the step's start.
+/// Second derivatives at one stage. The letters say with respect to what: coordinates q, rates v,
+/// accelerations a, controls u, design variables d; sq, sv are q, v at the step's start.
 struct StageCurvature {
   Eigen::MatrixXd qq, qv, qa, vv;        ///< by q, q̇ and a                    [dof x dof]
   Eigen::MatrixXd uq, uv;                ///< of what is measured              [controls x dof]
@@ -19,31 +19,31 @@ struct StageCurvature {
   Eigen::VectorXd by_p;  ///< first derivative by p, if there are designs        [parameters]
 };
 
-/// Second derivatives of  z·g(q, q̇, a, start, u, p) + y·measured(q, q̇, u, p)  at one stage,
+/// Second derivatives of z·g(q, q̇, a, start, u, p) + y·measured(q, q̇, u, p) at one stage,
 /// contracted with z and y before anything is stored: a dual number runs through the transposed
-/// derivative once per coordinate, rate and design variable. By a, start and u there is no second
-/// derivative but the mixed ones that are listed.
+/// derivative once per coordinate, rate and design variable. With respect to a, start and u only
+/// the mixed second derivatives listed above are non-zero.
 ///
 /// Parameters move with design variables d along a constant ∂p/∂d. Holds its workspace for one
 /// horizon and belongs to one thread at a time.
 class StageHessian {
  public:
-  /// @param designs    number of design variables
+  /// @param designs  number of design variables
   StageHessian(const Horizon& horizon, Eigen::Index designs);
 
-  /// Takes parameters and how they move.
+  /// Sets the parameters and how they depend on the design variables.
   ///
   /// @param map_jacobian  ∂p/∂d                                    [parameters x designs]
   void set_parameters(const Eigen::VectorXd& p, const Eigen::MatrixXd& map_jacobian);
 
-  /// Evaluates at a stage of a trajectory that has the parameters.
+  /// Evaluates at a stage of a trajectory computed with these parameters.
   ///
   /// @param z  weights on g                                                      [dof]
-  /// @param y  weights on what is measured at the stage's end; null: nothing is     [measured]
+  /// @param y  weights on what is measured at the stage's end; null: none           [measured]
   /// @returns  valid until the next evaluation
   const StageCurvature& evaluate(const Trajectory& trajectory, int stage, const Eigen::VectorXd& z,
                                  const Eigen::VectorXd* y);
-  /// The same of the initial state, where there are outputs alone.
+  /// The same for the initial state, where only outputs contribute.
   const StageCurvature& evaluate_start(const Trajectory& trajectory, const Eigen::VectorXd& y);
 
  private:

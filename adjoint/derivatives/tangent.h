@@ -5,7 +5,7 @@
 
 namespace hbar {
 
-/// Directions in which inputs move, one per column.
+/// Directions in which the inputs change, one per column.
 struct Directions {
   Eigen::MatrixXd p;      ///<                                        [parameters x count]
   Eigen::MatrixXd u;      ///< step by step                           [controls·steps x count]
@@ -17,14 +17,14 @@ struct Directions {
   [[nodiscard]] Eigen::Index count() const { return p.cols(); }
 };
 
-/// How the trajectory moves along directions: column by column, time step by time step.
+/// How the trajectory changes along the directions: one column each, time step after time step.
 struct Tangents {
   Eigen::MatrixXd q;         ///< rows k·dof … are step k's               [dof·(N+1) x count]
   Eigen::MatrixXd qdot;      ///<                                         [dof·(N+1) x count]
   Eigen::MatrixXd measured;  ///< measurements                        [measured·(N+1) x count]
 };
 
-/// Forward sensitivities H̄ δq̄ = −(∂ḡ/∂p) δp − … by the matrices of Linearizer and any solver.
+/// Forward sensitivities H̄ δq̄ = −(∂ḡ/∂p) δp − … with the matrices of Linearizer and any solver.
 ///
 /// Holds its workspace for one horizon and belongs to one thread at a time.
 class TangentSweep {
@@ -32,13 +32,13 @@ class TangentSweep {
   /// @param factory  of the solver for H̄; null means block substitution
   explicit TangentSweep(const Horizon& horizon, solvers::SolverFactory factory = nullptr);
 
-  /// @param trajectory  whole, of this horizon
+  /// @param trajectory  complete, of this horizon
   /// @throws NumericalFailure if H̄ is singular or a residual is too large
   [[nodiscard]] Tangents push_forward(const Trajectory& trajectory, const Directions& directions);
 
-  /// The system that was assembled last.
+  /// The system assembled last.
   [[nodiscard]] const Linearization& linearization() const { return system_.linearization(); }
-  /// −∂ḡ·directions of the last call: what H̄ was solved with.  [m x count]
+  /// −∂ḡ·directions of the last call: the right-hand sides of the solve with H̄.  [m x count]
   [[nodiscard]] const Eigen::MatrixXd& right_hand_sides() const { return rhs_; }
   [[nodiscard]] const solvers::LinearSolver& solver() const { return system_.solver(); }
 
@@ -53,7 +53,8 @@ class TangentSweep {
                                             const Tangents& tangents, const Directions& directions,
                                             Eigen::Index i);
 
-/// Σ over the members of Tangents of ‖partials‖ ‖tangents‖: what rounding in dΨ is measured by.
+/// Σ over the members of Tangents of ‖partials‖ ‖tangents‖: the yardstick for rounding errors in
+/// dΨ.
 [[nodiscard]] double norm_product(const TrajectoryPartials& partials, const Tangents& tangents);
 
 }  // namespace hbar

@@ -20,15 +20,16 @@ struct DesignVariables {
   [[nodiscard]] Eigen::Index size() const { return start.size(); }
 };
 
-/// One of them, as it is written down.
+/// One design variable, in the form in which a user writes it.
 struct DesignVariable {
   std::string name;
   std::string unit = {};  ///< in the model's unit system
   double start = 0.0;
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
-  double scale = 0.0;  ///< typical size > 0 of a change; 0: a quarter of what the bounds leave, or
-                       ///< where one is open, |start|, or 1 where that is 0
+  /// Typical size > 0 of a change; 0: a quarter of the range between the bounds or, if one of them
+  /// is infinite, |start|, or 1 if that is 0.
+  double scale = 0.0;
 };
 
 /// @throws InvalidInput naming the variable if a name is empty or taken, a number is not finite
@@ -36,7 +37,7 @@ struct DesignVariable {
 [[nodiscard]] DesignVariables design_variables(const std::vector<DesignVariable>& variables);
 
 /// A differentiable map d ↦ p from what a designer changes to a ParameterSet's vector: one length
-/// may move a joint, a body, a mass and three moments together.
+/// may change a joint, a body, a mass and three moments at once.
 ///
 /// Evaluations are pure: any d of the right size may be asked for, in any order.
 class DesignMap {
@@ -59,8 +60,8 @@ class DesignMap {
   /// @param d  design variables                                                   [d]
   /// @returns  one column per design variable                               [parameters x d]
   [[nodiscard]] virtual Eigen::MatrixXd jacobian(const Eigen::VectorXd& d) const = 0;
-  /// Whether a parameter may change with a variable at all; where not, sparse matrices have no
-  /// entry. By default every one may with every one.
+  /// Whether a parameter can depend on a variable at all; where it cannot, sparse matrices have no
+  /// entry. By default every parameter depends on every variable.
   [[nodiscard]] virtual bool depends(Eigen::Index /*parameter*/, Eigen::Index /*variable*/) const {
     return true;
   }

@@ -15,12 +15,12 @@
 
 namespace hbar {
 
-/// Parameters by name, for a formula to set. What it does not set keeps its nominal value.
+/// Parameters by name, for a formula to set. Those it does not set keep their nominal values.
 class NamedParameters {
  public:
   explicit NamedParameters(const ParameterSet& set);
 
-  /// @throws InvalidInput naming the nearest parameter if the set has no such one
+  /// @throws InvalidInput naming the nearest parameter if the set has none of that name
   [[nodiscard]] HyperDual& operator[](std::string_view name);
 
   [[nodiscard]] const std::vector<HyperDual>& values() const { return values_; }
@@ -32,7 +32,7 @@ class NamedParameters {
 
 namespace detail {
 
-/// Writes p, in the set's order, of d.
+/// Writes p(d), in the set's order.
 using MapFormula = std::function<void(std::span<const HyperDual> d, std::vector<HyperDual>& p)>;
 
 [[nodiscard]] DesignMapPointer make_formula_map(DesignVariables variables, MapFormula formula);
@@ -47,10 +47,10 @@ using MapFormula = std::function<void(std::span<const HyperDual> d, std::vector<
 ///     formula_map(variables, [](auto d) { return std::array{d[0], 0.5 * d[0] * d[1]}; })
 ///
 /// Elementary functions are called without `std::`. Which parameters depend on which variables is
-/// found at the start, both ways of a branch that is not taken there excepted.
+/// determined at the start values; dependences in a branch that is not taken there are not found.
 ///
 /// @throws InvalidInput if the formula's result is not finite at the start; later, if it has
-///         another size or depends on a variable on which it did not at the start
+///         another size or depends on a variable that it did not depend on at the start
 template <std::invocable<std::span<const HyperDual>> Formula>
 [[nodiscard]] DesignMapPointer formula_map(DesignVariables variables, Formula formula) {
   return detail::make_formula_map(

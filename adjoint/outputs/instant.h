@@ -12,14 +12,13 @@ template <Scalar S>
 struct Instant {
   const Applied<S>& applied;
   const Motion<S>& motion;           ///< poses and twists at (q, q̇)
-  const ContactForces<S>* contacts;  ///< linearised there; null where nobody reads them
+  const ContactForces<S>* contacts;  ///< linearised there; null if no output reads them
   VectorView<S> q;                   ///< coordinates                                    [dof]
   VectorView<S> qdot;                ///< their rates                                    [dof]
   VectorView<S> u;                   ///< controls                                  [controls]
 };
 
-/// Gradients by everything that an instant is a function of. Borrows them; what is computed is
-/// added.
+/// Gradients with respect to everything an instant depends on. Borrows them; results are added.
 template <Scalar S>
 struct InstantGradient {
   Eigen::Ref<VectorX<S>> q;     ///<                                                    [dof]
@@ -28,7 +27,7 @@ struct InstantGradient {
   Eigen::Ref<VectorX<S>> p;     ///<                                             [set.size()]
 };
 
-/// Makes instants of states where no stage was linearised.
+/// Makes instants for states at which no stage was linearised.
 ///
 /// Borrows the model. Sized once, reused; allocates nothing (ContactForces' limit applies). Holds
 /// its workspace and belongs to one thread at a time.
@@ -37,7 +36,7 @@ class InstantMotion {
  public:
   InstantMotion(const Model& model, bool with_contacts);
 
-  /// Computes motion and, if asked for, contact.
+  /// Computes the motion and, if requested, the contact forces.
   ///
   /// @param q, qdot  coordinates and rates                                              [dof]
   /// @param u        controls                                                      [controls]

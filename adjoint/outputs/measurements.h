@@ -10,8 +10,8 @@
 
 namespace hbar {
 
-/// Measurements of a model at one instant: their rows, one after the other, and the
-/// transposed derivative by everything they depend on. notation.md has the formulas.
+/// Measurements of a model at one instant: their rows, one after the other, and the transposed
+/// derivative with respect to everything they depend on. doc/notation.md has the formulas.
 ///
 /// Borrows the model. Sized once, reused; evaluations allocate nothing (ContactForces' limit on
 /// points applies). Holds its workspace and belongs to one thread at a time.
@@ -27,17 +27,17 @@ class Measurements {
   /// Names of the rows: "tip_speed.x", …                                             [size()]
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
 
-  /// Whether rows read contact forces: instants must then have them.
+  /// Whether any row reads contact forces; instants must then have them.
   [[nodiscard]] bool reads_contacts() const { return reads_contacts_; }
 
-  /// Finds what tactile sensors touch, once per instant, before the following.
+  /// Finds what the tactile sensors touch. Call it once per instant, before the functions below.
   void linearize(const Instant<S>& at);
 
   /// @param out  rows                                                                  [size()]
   void read(const Instant<S>& at, Eigen::Ref<VectorX<S>> out) const;
 
-  /// Transposed derivative: weights on the rows are added as gradients. Rows without weight cost
-  /// nothing; any number of pull-backs may follow one linearize().
+  /// Transposed derivative: adds the gradient of y·rows to `out`. Rows of weight zero cost nothing;
+  /// any number of pull-backs may follow one linearize().
   ///
   /// @param y  weights                                                                 [size()]
   void pull_back(const Instant<S>& at, const VectorView<S>& y, InstantGradient<S>& out);

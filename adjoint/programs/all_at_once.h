@@ -14,11 +14,11 @@
 namespace hbar {
 
 /// All-at-once: x = [ InputVariables | q of stage 1 | q of stage 2 | … ], and after the problem's
-/// own rows the residuals ḡ = 0 of every stage, each divided by the largest entry that its row of H̄
-/// has at the start. Nothing is simulated; the Jacobian is [∂ḡ/∂(d, u, q₀, q̇₀)  H̄], sparse.
+/// own rows the residuals ḡ = 0 of every stage, each divided by the largest entry of its row of H̄
+/// at the start. Nothing is simulated; the Jacobian is [∂ḡ/∂(d, u, q₀, q̇₀) H̄], sparse.
 ///
-/// The Hessian of σΨ + λᵀ(c, ḡ) is exact and sparse, too: per stage, StageHessian contracted with
-/// the multipliers and brought to coordinates by the integrator's stencil.
+/// The Hessian of σΨ + λᵀ(c, ḡ) is exact and sparse as well: per stage, StageHessian contracted
+/// with the multipliers and mapped to coordinates by the integrator's stencil.
 ///
 /// Steps are never halved here, and exponential coordinates stay in the chart they start in.
 class AllAtOnce final : public Transcription {
@@ -33,7 +33,7 @@ class AllAtOnce final : public Transcription {
   void constraint_jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& values) override;
   void lagrangian_hessian(const Eigen::VectorXd& x, double sigma, const Eigen::VectorXd& lambda,
                           solvers::HessianKind kind, Eigen::VectorXd& values) override;
-  /// Of the coordinates in x, which need not be a motion.
+  /// The values of the coordinates in x, which need not satisfy ḡ = 0.
   [[nodiscard]] const TrajectoryValues& trajectory_values(const Eigen::VectorXd& x) override;
 
   /// ‖ḡ‖∞ at x, in the scaled rows.

@@ -9,27 +9,25 @@
 
 namespace hbar {
 
-/// The curvature of all-at-once: second derivatives of λᵀ ḡ + y·measured by x, where y are the
-/// weights on what is measured. Stage by stage, StageHessian is contracted with the multipliers and
-/// brought to coordinates by the integrator's stencil.
+/// The curvature of all-at-once: second derivatives of λᵀ ḡ + y·measured with respect to x, where y
+/// are the weights on what is measured. Stage by stage, StageHessian is contracted with the
+/// multipliers and mapped to coordinates by the integrator's stencil.
 class AllAtOnceHessian {
  public:
   /// @param head, layout  must outlive this object
   AllAtOnceHessian(const TrajectoryProblem& problem, const InputVariables& head,
                    const StageLayout& layout, const ValueDependence& values);
 
-  /// Lays down its entries, in the order in which put() fills them.
+  /// Declares its entries, in the order in which put() fills them.
   void add(EntryPlan& entries) const;
 
   /// Fills them.
   ///
-  /// @param d             design variables                                            [d]
-  /// @param map_jacobian  of the design map there                                     [parameters x
-  /// d]
-  /// @param z             multipliers of ḡ                                            [dof·(stages
-  /// − 1)]
-  /// @param weights       on the trajectory's values; those on what is measured and on the
-  ///                      parameters count
+  /// @param d             design variables                                                  [d]
+  /// @param map_jacobian  of the design map there                              [parameters x d]
+  /// @param z             multipliers of ḡ                                   [dof·(stages − 1)]
+  /// @param weights       on the trajectory's values; only those on measurements and on parameters
+  ///                      are read
   void put(const Trajectory& trajectory, const Eigen::VectorXd& d,
            const Eigen::MatrixXd& map_jacobian, const Eigen::VectorXd& z,
            const TrajectoryPartials& weights, EntryPlan& entries);

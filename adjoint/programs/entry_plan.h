@@ -13,11 +13,11 @@ namespace hbar {
 /// add(), entry by entry in that order; then filled any number of times by put(), without a search.
 class EntryPlan {
  public:
-  /// A contribution will come to this place.
+  /// Declares a contribution to this place.
   void add(Eigen::Index row, Eigen::Index column) {
     added_.emplace_back(static_cast<int>(column), static_cast<int>(row));
   }
-  /// The same of the lower triangle of a symmetric matrix: (row, column) in either order.
+  /// The same for the lower triangle of a symmetric matrix: (row, column) in either order.
   void add_lower(Eigen::Index a, Eigen::Index b) { add(std::max(a, b), std::min(a, b)); }
 
   /// Ends the set-up: lists each place once, column by column.
@@ -39,7 +39,7 @@ class EntryPlan {
   }
   [[nodiscard]] const solvers::SparsityPattern& pattern() const { return pattern_; }
 
-  /// Begins to fill: `values` gets a zero per place.
+  /// Starts filling: `values` gets one zero per place.
   void begin(Eigen::VectorXd& values) {
     values.setZero(static_cast<Eigen::Index>(pattern_.rows.size()));
     values_ = &values;
@@ -47,7 +47,7 @@ class EntryPlan {
   }
   /// The next contribution, in the order of add().
   void put(double value) { (*values_)[slots_[next_++]] += value; }
-  /// Whether all contributions have come.
+  /// Whether all contributions have been put.
   [[nodiscard]] bool is_full() const { return next_ == slots_.size(); }
 
  private:

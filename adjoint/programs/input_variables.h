@@ -13,7 +13,7 @@ namespace hbar {
 ///
 ///     x = [ design d | held controls, block by block | q₀ | q̇₀ | … ]      (q₀, q̇₀ if free)
 ///
-/// What a transcription adds follows.
+/// A transcription appends its own variables.
 class InputVariables {
  public:
   /// @param problem  must outlive this object
@@ -27,7 +27,7 @@ class InputVariables {
   /// Number of controls at one instant.
   [[nodiscard]] Eigen::Index control_count() const { return control_count_; }
   [[nodiscard]] int block_count() const { return blocks_; }
-  /// Block of controls that acts during a step.
+  /// The block of controls that acts during a step.
   [[nodiscard]] int block_of_step(int step) const { return step / problem_.controls.hold; }
   /// Place in x of a block's first control.
   [[nodiscard]] Eigen::Index control_place(int block) const {
@@ -37,13 +37,13 @@ class InputVariables {
   /// Place in x of q₀; q̇₀ follows. Only if state_is_free().
   [[nodiscard]] Eigen::Index state_place() const { return control_place(blocks_); }
 
-  /// What x simulates.
+  /// The simulation inputs that x stands for.
   [[nodiscard]] Inputs inputs(const Eigen::VectorXd& x) const;
   /// The design variables of x.                                                         [d]
   [[nodiscard]] Eigen::VectorXd design(const Eigen::VectorXd& x) const {
     return x.head(design_count_);
   }
-  /// The design variables that a parameter may change with, ascending.
+  /// The design variables that a parameter can depend on, ascending.
   [[nodiscard]] const std::vector<Eigen::Index>& designs_of(Eigen::Index parameter) const {
     return designs_of_[static_cast<std::size_t>(parameter)];
   }
@@ -56,10 +56,10 @@ class InputVariables {
   [[nodiscard]] double design_cost(const Eigen::VectorXd& x) const;
   /// Adds its gradient.
   void add_design_cost_gradient(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> out) const;
-  /// Second derivative by d_i.
+  /// Its second derivative with respect to d_i.
   [[nodiscard]] double design_cost_curvature(Eigen::Index i) const;
 
-  /// Refuses a term that reads beyond the trajectory, naming its row.
+  /// Refuses a term that reads a step outside the trajectory, naming its row.
   void require_places(const ConstraintTerm& term) const;
 
  private:

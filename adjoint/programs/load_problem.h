@@ -16,24 +16,24 @@ enum class ParameterChoice {
   kNamed  ///< LoadOptions::parameter_names
 };
 
-/// An objective that needs no numbers of its own.
+/// An objective that needs no further data.
 enum class ObjectiveChoice {
   kVariables,      ///< ½ Σ_{k=1…N} ‖v_k‖²
   kFinalPosition,  ///< ½ ‖q_N‖²
   kTactile         ///< ½ Σ_{k=1…N} ‖tactile_k‖²
 };
 
-/// What to take otherwise than a scene says, or than is usual where a scene cannot say it.
+/// Overrides of what the scene says, and settings that a scene cannot express.
 struct LoadOptions {
   std::optional<std::string> integrator;  ///< else the scene's
   std::optional<double> h;                ///< time step, time, > 0; else the scene's
   int steps = 100;                        ///< N ≥ 1
   std::optional<double> newton_tol;       ///< on ‖g‖₂, > 0; else the scene's
-  /// Of the gradient, as solver_factory has it, "auto" or "sweep"; else the scene's.
+  /// For the gradient: a name that solver_factory knows, "auto" or "sweep"; else the scene's.
   std::optional<std::string> linear_solver;
   ParameterChoice parameters = ParameterChoice::kMask;
   std::vector<std::string> parameter_names;  ///< as ParameterSet::named; kNamed only
-  /// Else kVariables where the scene has an end effector, and kFinalPosition where it has none.
+  /// Else kVariables if the scene has an end effector, and kFinalPosition if it has none.
   std::optional<ObjectiveChoice> objective;
   const std::atomic<bool>* stop = nullptr;  ///< see SimulationOptions
 };
@@ -44,21 +44,21 @@ struct LoadedProblem {
   ObjectiveChoice objective;  ///< the one that was taken
   std::string
       linear_solver;  ///< of the gradient: "sweep" is AdjointSweep, others AssembledAdjoint's
-  std::vector<std::string> notices;          ///< what the person should know, each `file:line: …`
-  std::vector<std::filesystem::path> files;  ///< read for it, the scene first; each once
+  std::vector<std::string> notices;          ///< what the user should know, each `file:line: …`
+  std::vector<std::filesystem::path> files;  ///< files read, the scene first; each once
 };
 
-/// An option that does not suit the scene, whereas the scene itself is right.
+/// An option that does not suit the scene, while the scene itself is valid.
 class InvalidOption : public InvalidInput {
  public:
   using InvalidInput::InvalidInput;
 };
 
-/// Reads a scene file, builds its model and makes a problem of it.
+/// Reads a scene file, builds its model and turns it into a problem.
 ///
 /// @throws IoError        if the scene or a file it names cannot be read
-/// @throws InvalidInput   if the scene is not right; the message begins with its file name
-/// @throws InvalidOption  if the options are not, or do not suit it
+/// @throws InvalidInput   if the scene is invalid; the message begins with its file name
+/// @throws InvalidOption  if the options are invalid, or do not suit the scene
 [[nodiscard]] LoadedProblem load_problem(const std::filesystem::path& scene,
                                          const LoadOptions& options = {});
 

@@ -9,14 +9,15 @@
 
 namespace hbar {
 
-/// Single and multiple shooting: the horizon in segments (single shooting has one), each simulated
-/// from its first state. x = [ InputVariables | q, q̇ at the start of the second segment | … ], and
-/// after the problem's own rows the states at the segments' ends equal the next ones' starts.
+/// Single and multiple shooting: the horizon is split into segments (single shooting has one), each
+/// simulated from its first state. x = [ InputVariables | q, q̇ at the start of the second segment
+/// | … ], and after the problem's own rows come those that make each segment's end equal the next
+/// one's start.
 ///
-/// Segments are evaluated side by side by threads. The gradient is an adjoint sweep, the Jacobian a
-/// tangent sweep with a direction per variable that the segment knows, the exact Hessian a
-/// Hessian-vector product per such variable. A row that reads step k depends on the variables of
-/// k's segment alone, and of its controls only on those until k.
+/// Segments are evaluated in parallel threads. The gradient is an adjoint sweep, the Jacobian a
+/// tangent sweep with one direction per variable of the segment, the exact Hessian one
+/// Hessian-vector product per such variable. A row that reads step k depends only on the variables
+/// of k's segment, and among its controls only on those up to k.
 ///
 /// At a step where segments meet, the values are those of the segment that ends there.
 class Shooting final : public Transcription {
@@ -48,8 +49,8 @@ class Shooting final : public Transcription {
   void gather_values(const Inputs& whole);
   void move_to(const Eigen::VectorXd& x);
   void differentiate(const Eigen::VectorXd& x);
-  // Numbers of the trajectory depend on nearly all that a segment knows: their second partials are
-  // summed as dense matrices, a block for each two segments that a pair reads.
+  // Numbers of the trajectory depend on nearly all variables of a segment: their second partials
+  // are summed as dense matrices, one block for each two segments that a pair reads.
   void add_second_places(const std::vector<SecondPlace>& places, EntryPlan& entries) const override;
   void put_second_partials(const std::vector<SecondPlace>& places, const Eigen::VectorXd& second,
                            EntryPlan& entries) override;

@@ -11,7 +11,7 @@
 
 namespace hbar {
 
-/// Which variables of a program a segment of the horizon depends on, as runs of x:
+/// The variables of a program that a segment of the horizon depends on, as runs of x:
 /// [ design | its blocks of controls | its first state, if that is a variable ]. Its own vectors
 /// have the same order.
 struct SegmentColumns {
@@ -29,7 +29,7 @@ struct SegmentColumns {
     }
     return i < design + controls ? first_control + i - design : first_state + i - design - controls;
   }
-  /// The inverse: which of the segment's variables stands at a place of x.
+  /// The inverse: which of the segment's variables is at a place of x.
   [[nodiscard]] Eigen::Index variable(Eigen::Index at) const {
     if (at < design) {
       return at;
@@ -39,9 +39,9 @@ struct SegmentColumns {
   }
 };
 
-/// A stretch of the horizon that is simulated by itself, with everything that shooting asks of it.
+/// A part of the horizon that is simulated by itself, with everything that shooting needs from it.
 ///
-/// Belongs to one thread at a time; different segments do not touch each other.
+/// Belongs to one thread at a time; different segments are independent.
 class ShootingSegment {
  public:
   /// @param whole       of the whole horizon; model and parameters are shared
@@ -53,27 +53,30 @@ class ShootingSegment {
 
   /// Simulates. Where that fails, failure() says why.
   ///
-  /// @param inputs  of this segment: u has its own steps alone
+  /// @param inputs  of this segment: u has only its own steps
   void simulate(const Inputs& inputs);
   /// Why the last point cannot be simulated; empty if it can.
   [[nodiscard]] const std::string& failure() const { return failure_; }
-  /// Of the last point, if it could be simulated; the first column is the segment's first state.
+  /// Values at the last point, if it could be simulated; the first column is the segment's first
+  /// state.
   [[nodiscard]] const TrajectoryValues& values() const { return values_; }
 
   /// (∂values/∂inputs)ᵀ of weights: one adjoint sweep.
   ///
-  /// @param weights  on values(); those on the first column count where the state is a variable
+  /// @param weights  on values(); those on the first column are read only if the state is a
+  ///                 variable
   [[nodiscard]] Gradient pull_back(const TrajectoryPartials& weights) {
     return adjoint_.pull_back(trajectory_, weights);
   }
-  /// Tangents of values() by the segment's variables, in the order of SegmentColumns.
+  /// Tangents of values() with respect to the segment's variables, in the order of SegmentColumns.
   const Tangents& differentiate(const Eigen::MatrixXd& map_jacobian);
   [[nodiscard]] const Tangents& tangents() const { return tangents_; }
 
-  /// Second derivative of weights·values by the segment's variables, the weights and the design
-  /// map's Jacobian being constant.
+  /// Second derivative of weights·values with respect to the segment's variables, the weights and
+  /// the design map's Jacobian being constant.
   ///
-  /// @param by_p  gets the derivative of weights·values by the parameters  [parameters]
+  /// @param by_p  receives the derivative of weights·values with respect to the parameters
+  ///                                                                       [parameters]
   [[nodiscard]] Eigen::MatrixXd curvature(const TrajectoryPartials& weights,
                                           const Eigen::MatrixXd& map_jacobian,
                                           Eigen::VectorXd& by_p);
@@ -81,7 +84,7 @@ class ShootingSegment {
   [[nodiscard]] const SegmentColumns& columns() const { return columns_; }
   [[nodiscard]] int first_step() const { return first_step_; }
   [[nodiscard]] int step_count() const { return horizon().steps(); }
-  /// Whether exponential coordinates changed chart on the way.
+  /// Whether exponential coordinates changed chart within the segment.
   [[nodiscard]] bool changes_chart() const { return !trajectory_.chart_switches.empty(); }
 
  private:

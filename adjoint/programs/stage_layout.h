@@ -17,8 +17,8 @@ struct StageRun {
   double start_qdot = 0.0;
 };
 
-/// Where all-at-once has the coordinates of stages, x = [ InputVariables | q of stage 1 | q of
-/// stage 2 | … ], and how each stage depends on x by the integrator's stencil.
+/// Where all-at-once keeps the coordinates of the stages, x = [ InputVariables | q of stage 1 | q
+/// of stage 2 | … ], and how each stage depends on x by the integrator's stencil.
 class StageLayout {
  public:
   /// @param dof  of the model
@@ -30,7 +30,8 @@ class StageLayout {
   [[nodiscard]] const std::vector<StageRun>& runs(int stage) const {
     return runs_[static_cast<std::size_t>(stage)];
   }
-  /// Place in x of a stage's first coordinate; −1 for stage 0 if that is no variable.
+  /// Place in x of a stage's first coordinate; −1 for stage 0 if the initial state is not a
+  /// variable.
   [[nodiscard]] Eigen::Index place(int stage) const;
   /// The step that a stage ends, or −1.
   [[nodiscard]] int step_ended_by(int stage) const {

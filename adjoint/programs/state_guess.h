@@ -4,14 +4,14 @@
 
 namespace hbar {
 
-/// A first guess of the motion at the steps' ends, q above q̇: from `q_guess` with difference
-/// quotients for the rates, or, if that is empty, what the start of `head` simulates; from where
-/// that fails on, rest.
+/// A first guess of the motion at the ends of the steps, q above q̇: from `q_guess` with difference
+/// quotients for the rates or, if that is empty, the motion simulated from the start of `head`;
+/// rest from where that fails.
 ///
 /// @param q_guess  empty, or                                                  [dof x N+1]
 /// @returns                                                                   [2 dof x N+1]
 /// @throws InvalidInput if q_guess has another shape or is not finite, or exponential coordinates
-///         change chart in what is simulated
+///         change chart in the simulation
 [[nodiscard]] Eigen::MatrixXd guess_states(const TrajectoryProblem& problem,
                                            const InputVariables& head,
                                            const Eigen::MatrixXd& q_guess);

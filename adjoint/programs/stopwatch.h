@@ -4,7 +4,7 @@
 
 namespace hbar {
 
-/// Adds the time until its end to a sum.
+/// Adds its own lifetime, in seconds, to a sum.
 class Stopwatch {
  public:
   explicit Stopwatch(double& sum) : sum_(sum) {}

@@ -7,10 +7,10 @@
 
 namespace hbar {
 
-/// Makes a nonlinear program of a problem, of which it keeps a copy of its own.
+/// Turns a problem into a nonlinear program, which keeps its own copy of the problem.
 ///
 /// @throws InvalidInput if the problem's parts or the options do not fit together: sizes, places
-///         beyond the trajectory, more segments than steps
+///         outside the trajectory, more segments than steps
 [[nodiscard]] std::unique_ptr<Transcription> transcribe(const TrajectoryProblem& problem,
                                                         const TranscriptionOptions& options = {});
 

@@ -23,11 +23,12 @@ struct TranscriptionTimes {
 /// A TrajectoryProblem as a nonlinear program. Its x begins with InputVariables; its constraints
 /// begin with the problem's own rows.
 ///
-/// A point is simulated once, whatever is asked there. Where the parameters are impossible or the
-/// simulation fails, an evaluation throws EvaluationError. hessian_pattern(kExact) throws
-/// InvalidInput if a term or the design map has no second derivatives, naming it; kGaussNewton is
-/// the second derivative of the objective by the trajectory's values, brought to x by first
-/// derivatives, and needs only the objective's.
+/// Each point is simulated once, however many functions are evaluated there. Where the parameters
+/// are impossible or the simulation fails, an evaluation throws EvaluationError.
+/// hessian_pattern(kExact) throws InvalidInput if a term or the design map has no second
+/// derivatives, naming it; kGaussNewton is the second derivative of the objective with respect to
+/// the trajectory's values, mapped to x by first derivatives, and needs only the objective's second
+/// partials.
 class Transcription : public solvers::Nlp {
  public:
   [[nodiscard]] const solvers::NlpVariables& variables() const final { return variables_; }
@@ -39,10 +40,10 @@ class Transcription : public solvers::Nlp {
   }
 
   /// The trajectory's values at x.
-  /// @throws EvaluationError where it cannot be simulated
+  /// @throws EvaluationError if it cannot be simulated
   [[nodiscard]] virtual const TrajectoryValues& trajectory_values(const Eigen::VectorXd& x) = 0;
 
-  /// What x gives the simulation.
+  /// The simulation inputs that x stands for.
   [[nodiscard]] Inputs inputs(const Eigen::VectorXd& x) const { return head_.inputs(x); }
   /// The design variables of x.                                                         [d]
   [[nodiscard]] Eigen::VectorXd design(const Eigen::VectorXd& x) const { return head_.design(x); }
@@ -51,7 +52,7 @@ class Transcription : public solvers::Nlp {
   [[nodiscard]] const TranscriptionTimes& times() const { return times_; }
 
  protected:
-  /// Lays down the head of x and the problem's own rows.
+  /// Sets up the head of x and the problem's own rows.
   /// @throws InvalidInput if the problem's parts do not fit together
   explicit Transcription(const TrajectoryProblem& problem);
 
@@ -59,27 +60,27 @@ class Transcription : public solvers::Nlp {
   void add_variables(const solvers::NlpVariables& more);
   /// Appends equations c = 0 after the problem's own rows.
   void add_equations(const std::vector<std::string>& names);
-  /// @throws InvalidInput if x has not as many entries as there are variables
+  /// @throws InvalidInput if the size of x is not the number of variables
   void require_size(const Eigen::VectorXd& x) const;
   /// Number of the problem's own rows.
   [[nodiscard]] Eigen::Index own_rows() const { return own_rows_; }
   /// Values of the problem's own rows.
   void own_constraints(const TrajectoryValues& values, Eigen::VectorXd& c) const;
-  /// σ ∂Ψ + λᵀ ∂c by the values, of the objective's terms and the problem's own rows.
+  /// σ ∂Ψ + λᵀ ∂c with respect to the values, for the objective's terms and the problem's own rows.
   [[nodiscard]] TrajectoryPartials lagrangian_partials(const TrajectoryValues& values, double sigma,
                                                        const Eigen::VectorXd& lambda) const;
 
-  /// The entries of x that a number of the trajectory depends on. It never changes.
+  /// The entries of x that a number of the trajectory depends on; always the same.
   [[nodiscard]] virtual std::vector<Eigen::Index> columns_of(const ValuePlace& place) const = 0;
-  /// The number's derivatives by columns_of(place), at the point that was differentiated last.
+  /// The number's derivatives with respect to columns_of(place), at the point differentiated last.
   virtual void derivatives_of(const ValuePlace& place, std::vector<double>& out) = 0;
 
-  /// Lays down the Jacobian of the problem's own rows, and fills it in the same order.
+  /// Declares the Jacobian of the problem's own rows, and fills it in the same order.
   void add_own_rows(EntryPlan& entries) const;
   void put_own_rows(const TrajectoryValues& values, EntryPlan& entries);
 
-  /// Lays down Σ second (a bᵀ + b aᵀ), once where a is b, with a and b the derivatives of two
-  /// numbers by x, place by place; and fills it in the same order.
+  /// Declares Σ second (a bᵀ + b aᵀ), counted once where a is b, with a and b the derivatives of
+  /// two numbers with respect to x, place by place; and fills it in the same order.
   virtual void add_second_places(const std::vector<SecondPlace>& places, EntryPlan& entries) const;
   virtual void put_second_partials(const std::vector<SecondPlace>& places,
                                    const Eigen::VectorXd& second, EntryPlan& entries);
@@ -90,12 +91,12 @@ class Transcription : public solvers::Nlp {
     std::vector<SecondPlace> objective;  // second places of the objective's terms
     std::vector<SecondPlace> own;        // and of the problem's own rows, `row` over all of them
   };
-  /// The set-up for a kind, made when it is first asked for.
+  /// The set-up for a kind, made on first use.
   /// @throws InvalidInput naming a term, or the design map, that has no second derivatives
   [[nodiscard]] HessianPlan& plan(solvers::HessianKind kind);
-  /// Lays down what kExact adds behind the terms' second partials and the design cost.
+  /// Declares what kExact adds after the terms' second partials and the design cost.
   virtual void add_curvature(EntryPlan& entries) const = 0;
-  /// Fills what the terms' second partials and the design cost give.
+  /// Fills in the contributions of the terms' second partials and the design cost.
   void begin_values(HessianPlan& plan, const TrajectoryValues& values, double sigma,
                     const Eigen::VectorXd& lambda, Eigen::VectorXd& out);
 

@@ -10,9 +10,9 @@
 
 namespace hbar {
 
-/// How the numbers that terms read depend on the variables of all-at-once: which entries of x move
-/// each, and by how much. An instant is linearised once for all of its rows, and a row is pulled
-/// back once per point, however often it is asked for.
+/// How the numbers that terms read depend on the variables of all-at-once: which entries of x
+/// affect each, and how strongly. An instant is linearised once for all of its rows, and a row is
+/// pulled back once per point, however often it is requested.
 ///
 /// Holds its workspace and belongs to one thread at a time.
 class ValueDependence {
@@ -20,15 +20,15 @@ class ValueDependence {
   /// @param head, layout  must outlive this object
   ValueDependence(const Horizon& horizon, const InputVariables& head, const StageLayout& layout);
 
-  /// The entries of x that a number depends on. They never change.
+  /// The entries of x that a number depends on; always the same.
   [[nodiscard]] std::vector<Eigen::Index> columns_of(const ValuePlace& place) const;
 
-  /// Takes the point that derivatives_of is about.
+  /// Sets the point at which derivatives_of evaluates.
   ///
   /// @param trajectory    must not change until the next move
-  /// @param map_jacobian  of the design map; the same                    [parameters x designs]
+  /// @param map_jacobian  of the design map; likewise                    [parameters x designs]
   void move_to(const Trajectory& trajectory, const Eigen::MatrixXd& map_jacobian);
-  /// A number's derivatives by columns_of(place).
+  /// A number's derivatives with respect to columns_of(place).
   void derivatives_of(const ValuePlace& place, std::vector<double>& out);
 
   /// What a measured row reads.
@@ -37,7 +37,7 @@ class ValueDependence {
   }
 
  private:
-  /// Derivatives of the rows that are asked for at one step, by what they read.
+  /// Derivatives of the rows requested at one step, with respect to what they read.
   struct StepDerivatives {
     std::vector<int> rows;    // in the order in which they were asked for
     int point = -1;           // of which the rest is

@@ -6,8 +6,8 @@
 
 namespace hbar {
 
-/// grad += factor · zᵀ ∂g/∂p of a stage, after stage.pull_back(z): O(1) per parameter block, the
-/// contraction of (21) without its matrix.
+/// grad += factor · zᵀ ∂g/∂p of a stage, after stage.pull_back(z): the contraction of (21) without
+/// its matrix, O(1) per parameter block.
 ///
 /// @param point  where the stage was linearised
 /// @param z      what was pulled back                                            [dof]
@@ -17,7 +17,7 @@ void add_parameter_gradient(const Applied<S>& applied, const StageResidual<S>& s
                             Eigen::Ref<VectorX<S>> grad);
 
 /// ∂g/∂p of a stage as explicit columns, after linearize: (23), (26), (27), (29). Rows that a
-/// parameter does not touch (parameter_rows) are left as they are.
+/// parameter does not affect (parameter_rows) are left unchanged.
 ///
 /// @param columns                                                     [dof x set.size()]
 template <Scalar S>

@@ -7,7 +7,7 @@
 
 namespace hbar {
 
-/// Where a stage's residual is evaluated.
+/// The point at which a stage's residual is evaluated.
 template <Scalar S>
 struct StagePoint {
   explicit StagePoint(const Model& model);
@@ -23,9 +23,8 @@ struct StagePoint {
   [[nodiscard]] double c() const { return 1.0 / (rate * rate); }
 };
 
-/// The one residual of every implicit stage,  g = M Δ − c f_r = c (ID(q, q̇, a; p) − τ)  (22), (24),
-/// (25), (28), and its derivatives. Joint forces enter through τ, contact as wrenches
-/// on bodies.
+/// The residual of every implicit stage, g = M Δ − c f_r = c (ID(q, q̇, a; p) − τ) (22), (24),
+/// (25), (28), and its derivatives. Joint forces enter through τ, contact as wrenches on bodies.
 ///
 /// Sized once, reused; evaluations allocate nothing. One object per thread.
 template <Scalar S>
@@ -41,14 +40,14 @@ class StageResidual {
   void linearize(const Mechanism<S>& mechanism, const StagePoint<S>& point,
                  Eigen::Ref<VectorX<S>> g);
 
-  /// weights.q G_q + weights.v G_v + weights.a c M, with G_q = ∂g/∂q, G_v = ∂g/∂q̇ at fixed others
-  /// and c M = ∂g/∂a.                                                           [dof x dof]
+  /// weights.q G_q + weights.v G_v + weights.a c M, with partial derivatives G_q = ∂g/∂q,
+  /// G_v = ∂g/∂q̇, c M = ∂g/∂a.                                                     [dof x dof]
   void jacobian(const JacobianWeights<S>& weights, Eigen::Ref<MatrixX<S>> out);
 
   /// ∂g/∂q of the stage as Newton needs it: q̇ and a follow q.                   [dof x dof]
   void newton_matrix(Eigen::Ref<MatrixX<S>> out);
 
-  /// Transposed derivatives applied to z; read the results below.
+  /// Applies the transposed derivatives to z; the accessors below give the results.
   void pull_back(const VectorView<S>& z);
 
   [[nodiscard]] const VectorX<S>& by_q() const { return by_q_; }        ///< G_qᵀ z     [dof]
@@ -64,13 +63,13 @@ class StageResidual {
   [[nodiscard]] const ContactForces<S>& contacts() const { return contacts_; }
   /// zᵀ of inverse dynamics alone, without the factor c.
   [[nodiscard]] const Pullback<S>& pullback() const { return pullback_; }
-  /// Covector of displacing a link's body alone, likewise without the factor c.     [6]
+  /// Covector of displacing a link's body alone, also without the factor c.         [6]
   [[nodiscard]] Vector6<S> body_frame(int link) const {
     return pullback_.body_frame(model_, motion_, dynamics_, link, touching_covectors());
   }
 
  private:
-  /// Contact's share of the last pull_back; null where nothing touches.
+  /// Contribution of contact to the last pull_back; null if nothing touches.
   [[nodiscard]] const LinkCovectors<S>* touching_covectors() const {
     return contacts_.active().empty() ? nullptr : &contact_covectors_;
   }

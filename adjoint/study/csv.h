@@ -8,7 +8,7 @@ namespace hbar::study {
 
 /// A cell of a table and where it stands.
 struct CsvCell {
-  std::string text;  ///< without quotes, and without blanks around what is not quoted
+  std::string text;  ///< without quotes, and without blanks around unquoted text
   int line = 0;      ///< from 1
   int column = 0;    ///< of its first character, from 1
 };
@@ -24,7 +24,7 @@ using CsvRow = std::vector<CsvCell>;
 ///   after one
 [[nodiscard]] std::vector<CsvRow> parse_csv(std::string_view text, const std::string& file);
 
-/// A text as a cell: in quotes, where it could be misread otherwise.
+/// A text as a cell, quoted if it could be misread otherwise.
 [[nodiscard]] std::string csv_cell(std::string_view text);
 
 /// A cell's number.

@@ -14,7 +14,7 @@ namespace hbar::study {
 /// A result as a line of the table of results, without its end.
 [[nodiscard]] std::string job_line(int index, const JobResult& result, std::size_t columns);
 
-/// The table of results: a comment that says whose it is, a heading, and a line per job that ended.
+/// The table of results: a comment that names the study, a heading, and one line per finished job.
 [[nodiscard]] std::string job_table(const JobOptions& options,
                                     const std::vector<std::optional<JobResult>>& results);
 
@@ -27,10 +27,10 @@ namespace hbar::study {
 [[nodiscard]] std::pair<int, JobResult> read_job(const CsvRow& row, const JobOptions& options,
                                                  const std::string& file);
 
-/// What a table of results holds.                                                      [count]
+/// The contents of a table of results.                                                 [count]
 ///
 /// @param text  the file's bytes
-/// @throws InvalidInput that begins `file:line:` if it is another study's or has been damaged
+/// @throws InvalidInput that begins `file:line:` if it belongs to another study or is damaged
 [[nodiscard]] std::vector<std::optional<JobResult>> read_job_table(std::string_view text,
                                                                    const JobOptions& options,
                                                                    const std::string& file);

@@ -6,18 +6,19 @@
 
 namespace hbar::study {
 
-/// What is known of a study's jobs.
+/// What is known about a study's jobs.
 struct JobReport {
   std::vector<std::optional<JobResult>> results;  ///< nothing for a job that was not run  [count]
-  int ran = 0;                                    ///< ended now
+  int ran = 0;                                    ///< finished in this run
   int kept = 0;                                   ///< found in the table
 
   [[nodiscard]] bool complete() const;
-  /// The converged job of least objective, the first of equals; none if none converged.
+  /// The converged job with the lowest objective, the first if several are equal; none if none
+  /// converged.
   [[nodiscard]] std::optional<int> best() const;
 };
 
-/// The random numbers of a job: they depend on the study's seed and the job's index alone.
+/// The random numbers of a job: they depend only on the study's seed and the job's index.
 [[nodiscard]] std::mt19937_64 job_random(std::uint64_t seed, int index);
 
 /// Runs independent jobs on all cores, each in a process of its own (fork), because Ipopt with
@@ -26,18 +27,18 @@ struct JobReport {
 /// end.
 ///
 /// The table is a CSV file with a line per job, in the order of their indices; it is replaced as a
-/// whole after each job. Called again with the same table, only the jobs run that are not in it: if
-/// this process is killed, no more than the running jobs are lost.
+/// whole after each job. A further call with the same table runs only the jobs that are not in it:
+/// if this process is killed, only the running jobs are lost.
 ///
 /// The calling process must have no other threads, since a child inherits the locks that they hold
 /// and not the threads that would release them. What a job writes to standard streams is not
 /// collected.
 ///
 /// @param options  see there
-/// @param job      called in child processes; a number of its result that is not finite, or another
-///   count of numbers than of columns, makes it a failed one
-/// @throws InvalidInput if options make no sense or the table is another study's
-/// @throws IoError if the table cannot be read or written, or no process be started
+/// @param job      called in child processes; a result with more or fewer numbers than columns, or
+///   with one that is not finite, counts as failed
+/// @throws InvalidInput if the options are inconsistent or the table belongs to another study
+/// @throws IoError if the table cannot be read or written, or no process can be started
 JobReport run_jobs(const JobOptions& options, const Job& job);
 
 }  // namespace hbar::study

@@ -8,18 +8,18 @@
 
 namespace hbar::study {
 
-/// What the minimisation of one weighted sum of two objectives reached.
+/// The result of minimising one weighted sum of two objectives.
 struct WeightedOptimum {
   bool converged = false;
-  double f1 = 0.0;                      ///< first objective; less is better
-  double f2 = 0.0;                      ///< second objective; less is better
-  solvers::PrimalDualPoint point = {};  ///< warm start of the neighbour
+  double f1 = 0.0;                      ///< first objective; smaller is better
+  double f2 = 0.0;                      ///< second objective; smaller is better
+  solvers::PrimalDualPoint point = {};  ///< warm start for the next weight
   std::string message = {};             ///< how it ended
 };
 
-/// Minimises weight · f1 + (1 − weight) · f2, or whatever else a weight from 0 to 1 chooses.
+/// Minimises weight · f1 + (1 − weight) · f2, or anything else that a weight from 0 to 1 selects.
 ///
-/// @param warm  the neighbour's solution; null: there is none, start cold
+/// @param warm  the neighbour's solution; null: start cold
 using WeightedSolve =
     std::function<WeightedOptimum(double weight, const solvers::PrimalDualPoint* warm)>;
 
@@ -35,7 +35,7 @@ struct ParetoPoint {
 /// @throws InvalidInput if n is below 2
 [[nodiscard]] std::vector<double> equal_weights(int n);
 
-/// Walks along the front of two objectives, each solution from its neighbour's.
+/// Traces the front of two objectives, starting each solve from its neighbour's solution.
 ///
 /// A solve that does not converge, returns numbers that are not finite or throws a NumericalFailure
 /// is kept as a point that did not converge, with its message; the next one starts from the last

@@ -6,53 +6,52 @@
 
 namespace hbar {
 
-/// How a periodic motion is looked for.
+/// How a periodic orbit is searched for.
 struct PeriodicOptions {
-  /// Periods simulated before Newton's method takes over: a start near the limit cycle. ≥ 1
+  /// Periods simulated before Newton's method takes over, to start it near the limit cycle; ≥ 1
   int warm_up = 3;
   /// q_N − q_0, rad or length; empty means zero. A wheel that turns once has 2π here.       [dof]
   Eigen::VectorXd advance = {};
-  /// Of the whole trajectory; tol is per stage, as in SimulationOptions.
+  /// For the whole trajectory; tol is per stage, as in SimulationOptions.
   solvers::NewtonOptions newton = {};
   solvers::SolverFactory solver = nullptr;  ///< for H̄; null means KLU
 };
 
-/// A motion with q_N = q_0 + advance and q̇_N = q̇_0: one period, N steps.
+/// A periodic orbit, q_N = q_0 + advance and q̇_N = q̇_0: one period of N steps.
 struct PeriodicOrbit {
-  Trajectory trajectory;         ///< inputs.q0 and qdot0 are those of the orbit
+  Trajectory trajectory;         ///< inputs.q0 and qdot0 lie on the orbit
   solvers::NewtonReport newton;  ///< of the whole trajectory
   double mismatch =
       0.0;  ///< max |(q_N, q̇_N) − (q_0, q̇_0)| of the last simulated period, as a start
 };
 
-/// Finds periodic motions: Newton's method on ḡ(q̄, p, u, q_N − advance, q̇_N) = 0 for the whole
-/// trajectory at once. H̄ then has blocks above its diagonal (PeriodicMatrix), which is what general
-/// sparse solvers are for; the period is the horizon's N·h, as for a mechanism driven by
-/// controls.
+/// Finds periodic orbits: Newton's method on ḡ(q̄, p, u, q_N − advance, q̇_N) = 0 for the whole
+/// trajectory at once. H̄ then has blocks above its diagonal (periodic_matrix), which takes a
+/// general sparse solver; the period is the horizon's N·h, as for a mechanism driven by controls.
 ///
 /// BDF2 starts every period with its SDIRK2 step. Holds its workspace for one horizon and belongs
 /// to one thread at a time.
 class PeriodicSolver {
  public:
-  /// @throws InvalidInput if warm_up or the size of advance is not as PeriodicOptions says
+  /// @throws InvalidInput if warm_up or the size of advance violates PeriodicOptions
   explicit PeriodicSolver(const Horizon& horizon, PeriodicOptions options = {});
   ~PeriodicSolver();
   PeriodicSolver(PeriodicSolver&&) noexcept;
   PeriodicSolver& operator=(PeriodicSolver&&) noexcept;
 
-  /// @param guess  p and u as they are to be; q0 and qdot0 a start for the first period
+  /// @param guess  p and u of the orbit; q0 and qdot0 start the first period
   /// @throws NumericalFailure if a simulated period or Newton's method does not converge (the
   ///         message says where, how far it got and what to try), or H̄ is singular: the orbit is
-  ///         not isolated, as of a mechanism without damping or drive
-  /// @throws InvalidInput as Simulator::rollout, and if exponential coordinates end in another
-  /// chart
+  ///         not isolated, as for a mechanism without damping or drive
+  /// @throws InvalidInput as Simulator::rollout, and if exponential coordinates end in a
+  ///         chart other than they start in
   [[nodiscard]] PeriodicOrbit solve(const Inputs& guess);
 
-  /// Ψ and its derivative by p and u along an orbit, the initial state following:
+  /// Ψ and its derivative with respect to p and u along an orbit, with the initial state following:
   /// H̄ᵀ z̄ = ȳ with the periodic H̄, then ∂Ψ/∂(p, u) − z̄ᵀ ∂ḡ/∂(p, u).
   ///
-  /// @param orbit  that solve() found
-  /// @returns  with q0 and qdot0 zero: they are no inputs
+  /// @param orbit  found by solve()
+  /// @returns  with q0 and qdot0 zero: they are not inputs
   /// @throws NumericalFailure if H̄ is singular
   [[nodiscard]] Gradient gradient(const Trajectory& orbit, const Objective& objective);
 

@@ -10,19 +10,19 @@ namespace hbar {
 enum class SystemKind {
   /// H̄ = ∂ḡ/∂q̄ (20): gradients and sensitivities. Block lower triangular.
   kAdjoint,
-  /// H̄ of a trajectory that closes, q_N = q_0 and q̇_N = q̇_0: blocks above the diagonal.
+  /// H̄ of a periodic orbit, q_N = q_0 and q̇_N = q̇_0: blocks above the diagonal.
   kPeriodic,
-  /// SᵀS + λI of following a motion with forces on every coordinate, all of the trajectory unknown:
-  /// S = [√w E; √ρ D H̄] with E = ∂(what is followed)/∂q̄. Definite, block banded.
+  /// SᵀS + λI of tracking a motion with forces on every coordinate, the whole trajectory unknown:
+  /// S = [√w E; √ρ D H̄] with E = ∂(what is tracked)/∂q̄. Definite, block banded.
   kGaussNewton,
-  /// The optimality conditions of following a motion with the motors, states, controls and
-  /// multipliers unknown: quasi-definite, in time order.
+  /// The optimality conditions of tracking a motion with the motors; states, controls and
+  /// multipliers are unknown. Quasi-definite, in time order.
   kKkt
 };
 
 /// "adjoint", "periodic", "gauss_newton", "kkt".
 [[nodiscard]] std::string_view name_of(SystemKind kind);
-/// @throws InvalidInput naming the systems there are
+/// @throws InvalidInput listing the known systems
 [[nodiscard]] SystemKind find_system_kind(std::string_view name);
 
 /// A linear system of a trajectory.
@@ -32,12 +32,12 @@ struct TrajectorySystem : AssembledSystem {
 
 /// Assembles a system along a trajectory.
 ///
-/// b is −∂ḡ/∂q̇₀·1 for kAdjoint and kPeriodic (how the motion answers to a push at its start), and
-/// the negative gradient for a reference that lies 1 (rad or length) off for the other two.
+/// b is −∂ḡ/∂q̇₀·1 for kAdjoint and kPeriodic (the response to a push at the start); for the other
+/// two it is the negative gradient for a reference that is 1 (rad or length) away.
 ///
-/// @param trajectory  whole, of this horizon
-/// @throws InvalidInput for weights that are not as SystemOptions says, or a kPeriodic trajectory
-///         whose exponential coordinates end in another chart than they start
+/// @param trajectory  complete, of this horizon
+/// @throws InvalidInput for weights that violate SystemOptions, or a kPeriodic trajectory whose
+///         exponential coordinates end in a chart other than they start in
 [[nodiscard]] TrajectorySystem assemble_system(SystemKind kind, const Horizon& horizon,
                                                const Trajectory& trajectory,
                                                const SystemOptions& options = {});

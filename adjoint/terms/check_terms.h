@@ -8,23 +8,24 @@
 
 namespace hbar {
 
-/// How far a term's partials are from its values, and its second partials from its partials.
+/// How far a term's partials differ from differences of its values, and its second partials from
+/// differences of its partials.
 ///
-/// A number moves in units of the largest of its row over time (1 where all are zero).
+/// Each number is varied in units of the largest value of its row over time (1 if all are zero).
 struct TermCheck {
   /// Largest |central difference − partial|, over the norm of its row's partials.
   double gap = 0.0;
   std::string gap_name;  ///< "power by u 0 at step 2"; empty if gap is 0
-  /// Order in ε of c(x + ε δ) − c − ε c' δ along a direction that moves every number: 2 if the
-  /// partials are right; infinite if the remainder is mere rounding, as for linear rows.
+  /// Order in ε of c(x + ε δ) − c − ε c' δ along a direction that changes every number: 2 if the
+  /// partials are right; infinite if the remainder is only rounding, as for linear rows.
   double slope = std::numeric_limits<double>::infinity();
-  bool has_second = false;  ///< the term has second partials; the rest says nothing otherwise
+  bool has_second = false;  ///< the term has second partials; otherwise the rest means nothing
   /// Largest |central difference of a partial − second partial| over the norm of its row's second
-  /// partials: over all pairs of numbers, so that a pair that is not declared shows, too.
+  /// partials: over all pairs of numbers, so that an undeclared pair shows up too.
   double second_gap = 0.0;
   std::string second_gap_name;  ///< "power by u 0 at step 2 and qdot 6 at step 3"
-  /// Order in ε of what c(x + ε δ) differs from its quadratic model: 3 if all partials are right;
-  /// infinite if the remainder is mere rounding.
+  /// Order in ε of the difference between c(x + ε δ) and its quadratic model: 3 if all partials are
+  /// right; infinite if the remainder is only rounding.
   double second_slope = std::numeric_limits<double>::infinity();
   int repeated = 0;  ///< pairs that second_places lists more than once
   int idle = 0;      ///< listed pairs whose second partial is zero at these values
@@ -34,10 +35,10 @@ struct TermCheck {
 };
 
 /// Compares a term's partials and second partials with differences of its values and partials.
-/// Costs some eight evaluations of the term per number: for small made-up values.
+/// Costs about eight evaluations of the term per number: meant for small made-up values.
 ///
-/// @param values  where, far from kinks; any numbers of a trajectory's shape
-/// @throws InvalidInput if the term names a number that the values do not have
+/// @param values  where to check, away from kinks; any numbers of a trajectory's shape
+/// @throws InvalidInput if the term reads a number that the values do not contain
 [[nodiscard]] TermCheck check_objective_term(const ObjectiveTerm& term,
                                              const TrajectoryValues& values);
 [[nodiscard]] TermCheck check_constraint_term(const ConstraintTerm& term,

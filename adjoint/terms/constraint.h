@@ -23,7 +23,7 @@ struct ConstraintRows {
   [[nodiscard]] Eigen::Index size() const { return lower.size(); }
 };
 
-/// Constraints on a trajectory, with exact partials. Which numbers they read never changes.
+/// Constraints on a trajectory, with exact partials. The set of numbers they read never changes.
 class ConstraintTerm {
  public:
   ConstraintTerm(const ConstraintTerm&) = delete;
@@ -35,10 +35,11 @@ class ConstraintTerm {
   [[nodiscard]] const std::vector<PartialPlace>& places() const { return places_; }
   /// Writes the rows' values c.                                                      [rows]
   virtual void values(const TrajectoryValues& values, Eigen::Ref<Eigen::VectorXd> c) const = 0;
-  /// Writes the partial of each place's row by its number, at fixed others.        [places]
+  /// Writes the partial derivative of each place's row with respect to its number.  [places]
   virtual void partials(const TrajectoryValues& values,
                         Eigen::Ref<Eigen::VectorXd> partials) const = 0;
-  /// By which pairs of numbers the rows have second partials; none for linear rows (this default).
+  /// The pairs of numbers in which the rows have second partials; none for linear rows (this
+  /// default).
   /// @throws InvalidInput if the term has no second partials though its rows are not linear
   [[nodiscard]] virtual std::vector<SecondPlace> second_places() const { return {}; }
   /// Writes the second partial of each of second_places().                  [second places]
@@ -47,7 +48,7 @@ class ConstraintTerm {
 
  protected:
   /// @throws InvalidInput if the rows' sizes differ, a lower bound exceeds an upper one, or a place
-  ///         is of no row
+  ///         belongs to no row
   ConstraintTerm(ConstraintRows rows, std::vector<PartialPlace> places);
 
  private:
@@ -64,14 +65,14 @@ using ConstraintPointer = std::shared_ptr<const ConstraintTerm>;
 /// @param step          k = 0 … N
 /// @param target        in the world, length                                          [3]
 /// @param half_width    of the box around the target, length, ≥ 0
-/// @throws InvalidInput if the model has no such end effector, or a number is not allowed
+/// @throws InvalidInput if the model has no such end effector, or a number is out of range
 [[nodiscard]] ConstraintPointer variable_at_step(const Model& model,
                                                  const std::string& end_effector, int step,
                                                  const Eigen::Vector3d& target,
                                                  double half_width = 0.0);
 
-/// Every joint that has limits, within them at the ends of the given steps. (The simulation itself
-/// knows limits as springs at most.)
+/// Keeps every joint that has limits within them at the ends of the given steps. (The simulation
+/// itself models limits by springs, if at all.)
 ///
 /// @param steps   each k = 0 … N
 /// @param margin  how far inside the limits to stay, rad or length, ≥ 0
@@ -86,7 +87,7 @@ using ConstraintPointer = std::shared_ptr<const ConstraintTerm>;
                                                   const std::vector<int>& steps, double lower,
                                                   double upper);
 
-/// A weighted sum of design parameters, Σ weight p, as a total mass is.
+/// Bounds on a weighted sum of design parameters, Σ weight p, such as a total mass.
 ///
 /// @param names    of parameters in the set
 /// @param weights  one each; empty: ones
@@ -109,24 +110,24 @@ using ConstraintPointer = std::shared_ptr<const ConstraintTerm>;
                                                   Eigen::VectorXd weights,
                                                   Eigen::VectorXd constants = Eigen::VectorXd());
 
-/// Which second partials rows of one's own have, and what writes them.
+/// The second partials of custom rows, and the function that writes them.
 struct RowSecondPartials {
   std::vector<SecondPlace> places;
   /// As ConstraintTerm::second_partials; not called if there are no places
   std::function<void(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>)> partials;
 
-  /// Rows that are linear have none.
+  /// Linear rows have none.
   [[nodiscard]] static RowSecondPartials of_linear_rows() { return {}; }
 };
 
-/// Rows of one's own (check_constraint_term tells whether values and partials agree).
-/// generic_constraint needs the formula alone.
+/// Custom rows from functions for values and partials (check_constraint_term tells whether they
+/// agree). generic_constraint needs only a formula.
 ///
 /// @param places    what the rows read
 /// @param values    writes c                                                          [rows]
 /// @param partials  writes the partial of each place                                [places]
 /// @param second    for exact Hessians; without it second_places() throws InvalidInput
-/// @throws InvalidInput if a second place is of no row, or has no function that writes it
+/// @throws InvalidInput if a second place belongs to no row, or there is no function that writes it
 [[nodiscard]] ConstraintPointer user_constraint(
     ConstraintRows rows, std::vector<PartialPlace> places,
     std::function<void(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>)> values,

@@ -7,9 +7,9 @@
 
 namespace hbar {
 
-// Linear rows over what a trajectory is, most of them bounds on single numbers. With measurements
-// among the values, limits of grip, clearance, torque and power are such bounds, too. Where a
-// bound is infinite on both sides there is no row.
+// Linear rows over the numbers of a trajectory, most of them bounds on single numbers. Since
+// measurements are among the values, limits on grip, clearance, torque and power are such bounds
+// too. Where both bounds are infinite there is no row.
 
 /// Steps first … last, each `stride` after the one before.
 [[nodiscard]] std::vector<int> step_range(int first, int last, int stride = 1);
@@ -18,7 +18,7 @@ namespace hbar {
 /// "NAME at step K".
 ///
 /// @param name   of x, for messages
-/// @param field  member of the values that holds x; kP has no steps and makes one row, "NAME"
+/// @param field  member of the values that holds x; kP has no steps and gives one row, "NAME"
 /// @param index  row of the member
 /// @param steps  each k = 0 … N (of kU: 0 … N − 1)
 /// @throws InvalidInput if an index or a step is negative, or lower exceeds upper
@@ -52,18 +52,18 @@ namespace hbar {
 [[nodiscard]] ConstraintPointer control_rate(const Model& model, int steps,
                                              const Eigen::VectorXd& change);
 
-/// The end repeats the start: q_N − q_0 = advance and q̇_N − q̇_0 = 0: "hinge period",
-/// "hinge rate period". Coordinates are compared as numbers: a rotation that has changed its chart
-/// (see integrators.md) within the period is not recognised as the same.
+/// The end repeats the start: q_N − q_0 = advance and q̇_N − q̇_0 = 0: "hinge period", "hinge rate
+/// period". Coordinates are compared as numbers: a rotation that has changed its chart
+/// (doc/integrators.md) within the period does not count as equal.
 ///
 /// @param steps        N
 /// @param coordinates  indices; empty: all
-/// @param advance      of a step forward, say; empty: zeros                   [coordinates]
+/// @param advance      such as the length of a step forward; empty: zeros     [coordinates]
 [[nodiscard]] ConstraintPointer periodicity(const Model& model, int steps,
                                             std::vector<int> coordinates = {},
                                             const Eigen::VectorXd& advance = Eigen::VectorXd());
 
-/// p_a = ratio p_b + offset, as of two limbs that are alike.
+/// p_a = ratio p_b + offset, for example for two equal limbs.
 ///
 /// @param a, b    names of two parameters in the set
 /// @param offset  in a's unit
@@ -71,11 +71,11 @@ namespace hbar {
                                               double ratio, const std::string& b,
                                               double offset = 0.0);
 
-/// lower ≤ the mass of all bodies ≤ upper; bodies whose mass is not in the set count with what the
-/// model gives them.
+/// lower ≤ the mass of all bodies ≤ upper; bodies whose mass is not in the set count with the
+/// model's own mass.
 ///
-/// @throws InvalidInput if no mass is in the set, or a size is, of which a mass would be a
-///         nonlinear function
+/// @throws InvalidInput if the set contains no mass, or contains a size, on which masses depend
+///         nonlinearly
 [[nodiscard]] ConstraintPointer total_mass(const ParameterSet& set, const Model& model,
                                            double lower, double upper);
 

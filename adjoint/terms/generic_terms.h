@@ -15,10 +15,11 @@
 
 namespace hbar {
 
-/// A formula of some numbers, written once for double, Dual and HyperDual: its derivatives come
-/// from the formula alone.
+/// A custom formula of some numbers, written once for double, Dual and HyperDual; its derivatives
+/// follow from the formula alone.
 ///
-/// Made from any callable `T f(std::span<const T> x)` that holds for each T, as a generic lambda:
+/// Made from any callable `T f(std::span<const T> x)` that accepts each T, such as a generic
+/// lambda:
 ///
 ///     [](auto x) { return sqrt(x[0] * x[0] + x[1] * x[1]); }
 ///
@@ -55,17 +56,17 @@ class GenericFormula {
   std::shared_ptr<const Calls> calls_;
 };
 
-/// f of the numbers at some places, as a term: partials by Dual, second partials by HyperDual for
-/// each pair of places.
+/// f of the numbers at some places, as a term: partials from Dual, second partials from HyperDual
+/// for each pair of places.
 ///
-/// @param places  x of f, each once
+/// @param places  arguments of f, each once
 /// @throws InvalidInput if a place is named twice
 [[nodiscard]] TermPointer generic_term(std::string name, std::vector<ValuePlace> places,
                                        GenericFormula f);
 
-/// Σ weight f(numbers at a group of places): one formula at every step, say.
+/// Σ weight f(numbers at a group of places), for example one formula at every step.
 ///
-/// @param groups   each an x of f; no place twice within one
+/// @param groups   each the arguments of f; no place twice within a group
 /// @param weights  one per group; empty: ones                                       [groups]
 /// @throws InvalidInput if the sizes differ, or a group names a place twice
 [[nodiscard]] TermPointer generic_sum(std::string name, std::vector<std::vector<ValuePlace>> groups,
@@ -81,13 +82,13 @@ struct GenericRow {
   GenericFormula f;
 };
 
-/// Rows lower ≤ f(numbers at the row's places) ≤ upper, each with a formula of its own.
+/// Rows lower ≤ f(numbers at the row's places) ≤ upper, each with its own formula.
 /// @throws InvalidInput as ConstraintTerm's constructor, or if a row names a place twice
 [[nodiscard]] ConstraintPointer generic_constraint(std::vector<GenericRow> rows);
 
 /// The same with one formula for all rows.
 ///
-/// @param places  of each row, an x of f                                               [rows]
+/// @param places  of each row, the arguments of f                                      [rows]
 [[nodiscard]] ConstraintPointer generic_constraint(
     const ConstraintRows& rows, const std::vector<std::vector<ValuePlace>>& places,
     const GenericFormula& f);

@@ -10,8 +10,7 @@
 
 namespace hbar {
 
-/// Partial derivatives ∂Ψ/∂(q̄, q̇̄, measured, u, p) at fixed others, shaped like
-/// TrajectoryValues.
+/// Partial derivatives ∂Ψ/∂(q̄, q̇̄, measured, u, p), shaped like TrajectoryValues.
 struct TrajectoryPartials : Measured {
   explicit TrajectoryPartials(const TrajectoryValues& shape);
 
@@ -34,7 +33,7 @@ class ObjectiveTerm {
   [[nodiscard]] virtual double value(const TrajectoryValues& values) const = 0;
   /// Adds the term's partials to `partials`.
   virtual void add_partials(const TrajectoryValues& values, TrajectoryPartials& partials) const = 0;
-  /// By which pairs of numbers the term has second partials (`row` is 0).
+  /// The pairs of numbers in which the term has second partials (`row` is 0).
   ///
   /// @param shape  sized as the values will be
   /// @throws InvalidInput if the term has no second partials (as this default does)
@@ -56,8 +55,8 @@ class Objective {
   }
   [[nodiscard]] double value(const TrajectoryValues& values) const;
   [[nodiscard]] TrajectoryPartials partials(const TrajectoryValues& values) const;
-  /// The second places of all terms, term by term: a pair may be there once per term, and what it
-  /// has there adds up.
+  /// The second places of all terms, term by term: a pair may occur once per term, and its
+  /// contributions add up.
   ///
   /// @param shape  sized as the values will be
   /// @throws InvalidInput naming the term that has no second partials

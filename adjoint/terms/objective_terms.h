@@ -5,7 +5,7 @@
 namespace hbar {
 
 // Every term here has exact second partials. A weight is ≥ 0 unless its term says otherwise;
-// `steps` weighs the summands of a sum over steps one by one (see StepWeights).
+// `steps` weights each summand of a sum over steps (see StepWeights).
 
 /// ½ weight Σ_{k=1…N} ‖v_k‖² over all auxiliary variables.
 [[nodiscard]] TermPointer squared_variables(double weight = 1.0, const StepWeights& steps = {});
@@ -52,7 +52,7 @@ namespace hbar {
 
 /// ½ (weight_q ‖q_N − q‖² + weight_qdot ‖q̇_N − q̇‖²).
 ///
-/// @param q, qdot  wanted state at the end                                   [dof]
+/// @param q, qdot  desired state at the end                                  [dof]
 [[nodiscard]] TermPointer terminal_state(Eigen::VectorXd q, Eigen::VectorXd qdot, double weight_q,
                                          double weight_qdot);
 
@@ -62,20 +62,20 @@ namespace hbar {
 /// ½ weight h Σ_{k=1…N} ‖q̇_k‖².
 [[nodiscard]] TermPointer squared_velocity(double weight = 1.0, const StepWeights& steps = {});
 
-/// ½ weight Σ_{k=1…N−1} ‖u_k − u_{k−1}‖² / h: half the integral of the controls' squared rates.
-/// The change from u_{k−1} to u_k is weighed as step k + 1 is.
+/// ½ weight Σ_{k=1…N−1} ‖u_k − u_{k−1}‖² / h: half the integral of the controls' squared rates. The
+/// change from u_{k−1} to u_k has the weight of step k + 1.
 [[nodiscard]] TermPointer control_smoothness(double weight = 1.0, const StepWeights& steps = {});
 
-/// weight h Σ_{k=1…N} Σ_rows (√(P² + ε²) − ε) over measured powers P: the work that motors which
-/// give nothing back must do. ε rounds the corner of |P| off; what P = 0 costs is taken off again.
+/// weight h Σ_{k=1…N} Σ_rows (√(P² + ε²) − ε) over measured powers P: the work of motors that
+/// recover no energy. ε rounds off the corner of |P|; the cost of P = 0 is subtracted.
 ///
 /// @param rows       Horizon::measured_index
 /// @param smoothing  ε > 0, power: a small share of the powers that matter
 [[nodiscard]] TermPointer work(const std::vector<int>& rows, double smoothing, double weight = 1.0,
                                const StepWeights& steps = {});
 
-/// weight h Σ_{k=1…N} Σ_rows P over measured powers: the work with its sign, where braking gives
-/// back what driving took. Linear.
+/// weight h Σ_{k=1…N} Σ_rows P over measured powers: the signed work, where braking recovers
+/// energy. Linear.
 [[nodiscard]] TermPointer net_work(const std::vector<int>& rows, double weight = 1.0,
                                    const StepWeights& steps = {});
 
@@ -86,14 +86,14 @@ namespace hbar {
 [[nodiscard]] TermPointer time_integral(ValueField field, const std::vector<int>& rows,
                                         double weight = 1.0, const StepWeights& steps = {});
 
-/// weight · x_N, as a distance reached is; the last column of a member but p. Linear; a negative
-/// weight asks for much of it.
+/// weight · x_N, such as a distance reached: the last column of any member but p. Linear; a
+/// negative weight maximises it.
 ///
 /// @param field  the member x
 /// @param index  row of the member
 [[nodiscard]] TermPointer final_number(ValueField field, int index, double weight = 1.0);
 
-/// Σ weight · number: a linear cost of any numbers, parameters among them.
+/// Σ weight · number: a linear cost of any numbers, including parameters.
 ///
 /// @param places   each at most once
 /// @param weights  of any sign                                                 [places]
@@ -101,7 +101,7 @@ namespace hbar {
 [[nodiscard]] TermPointer weighted_numbers(std::string name, std::vector<ValuePlace> places,
                                            Eigen::VectorXd weights);
 
-/// Which second partials a term of the user's own has, and what writes them.
+/// The second partials of a custom term, and the functions that list and write them.
 struct TermSecondPartials {
   /// As ObjectiveTerm::second_places
   std::function<std::vector<SecondPlace>(const TrajectoryValues&)> places;
@@ -109,8 +109,8 @@ struct TermSecondPartials {
   std::function<void(const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>)> partials;
 };
 
-/// A term of the user's own: a value, and a function that adds its partials (check_objective_term
-/// and check_gradient tell whether they agree). generic_term needs the formula alone.
+/// A custom term: a value, and a function that adds its partials (check_objective_term and
+/// check_gradient tell whether they agree). generic_term needs only a formula.
 ///
 /// @param second  for exact Hessians; without it second_places() throws InvalidInput
 /// @throws InvalidInput if only one of the two functions of `second` is given

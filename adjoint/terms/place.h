@@ -10,7 +10,7 @@ class Horizon;
 class Model;
 class ParameterSet;
 
-/// World axes, as rows of what has three.
+/// World axes, as row numbers of anything with three rows.
 enum Axis { kX, kY, kZ };
 
 /// Numbers of a trajectory by their names, for terms that read single ones:
@@ -18,15 +18,14 @@ enum Axis { kX, kY, kZ };
 ///     generic_term("reach", {place::end_effector(model, "tip", kX, 100)},
 ///                  [](auto v) { return v[0] * v[0]; })
 ///
-/// A state has steps 0 … N, a control 0 … N − 1. Each throws InvalidInput for a name that is not
-/// there, with the nearest that is, and for a negative step.
+/// A state has steps 0 … N, a control 0 … N − 1. Each throws InvalidInput for an unknown name,
+/// suggesting the nearest one, and for a negative step.
 namespace place {
 
 /// @param name  as in ParameterSet: "body.rod.mass"
 [[nodiscard]] ValuePlace parameter(const ParameterSet& set, std::string_view name);
 
-/// @param name  as Model::coordinate_name: the joint's, and the coordinate's where there are
-/// several
+/// @param name  as Model::coordinate_name: the joint's, and the coordinate's if there are several
 [[nodiscard]] ValuePlace coordinate(const Model& model, std::string_view name, int step);
 
 /// The rate q̇ of a coordinate.

@@ -5,7 +5,8 @@
 
 namespace hbar {
 
-/// What has a gradient: a simulation, an objective of it, and the inputs where both are taken.
+/// Everything a gradient needs: a simulation, an objective, and the inputs at which both are
+/// evaluated.
 struct Problem {
   Horizon horizon;
   Objective objective;

@@ -17,11 +17,11 @@ using TermPointer = std::shared_ptr<const ObjectiveTerm>;
 struct StepWeights {
   Eigen::VectorXd each;  ///< empty: ones                                            [N or 0]
 
-  /// The weight of each step from the time of its end, w_k = weight(k h).
+  /// Weights as a function of the time at the end of each step, w_k = weight(k h).
   ///
   /// @param steps   N
   /// @param h       time step
-  /// @param weight  of a time; `[](double t) { return t; }` counts what happens late for more
+  /// @param weight  of a time; `[](double t) { return t; }` gives more weight to what happens late
   [[nodiscard]] static StepWeights over_time(int steps, double h,
                                              const std::function<double(double)>& weight);
   /// The weight of step k = 1 … N.
@@ -30,7 +30,7 @@ struct StepWeights {
   void check(const std::string& term) const;
 };
 
-/// Which rows of a member a sum without a list of its own takes.
+/// Which rows of a member a sum reads if it does not list them.
 enum class RowChoice {
   kAll,
   kVariables,  ///< of kMeasured: those of the end effectors
@@ -57,13 +57,12 @@ struct Jet {
   double curvature = 0.0;
 };
 
-/// Σ weight φ(x − target) over the numbers x of some sums: a term whose second partials form a
-/// diagonal.
+/// Σ weight φ(x − target) over the numbers x of some sums: a term with diagonal second partials.
 ///
 /// @param name    for messages
 /// @param sums    no number in more than one of them
 /// @param phi     φ
-/// @param linear  φ'' is zero everywhere: there are no second partials
+/// @param linear  φ'' is zero everywhere: no second partials
 /// @throws InvalidInput if a weight is not finite; later, if targets, weights or rows do not have
 ///         the values' shape
 [[nodiscard]] TermPointer separable_term(std::string name, std::vector<StepSum> sums,

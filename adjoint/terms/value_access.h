@@ -9,7 +9,7 @@
 
 namespace hbar {
 
-/// How TrajectoryValues move along one direction; shaped like them. `h` is 0.
+/// How TrajectoryValues change along one direction; same shape. `h` is 0.
 using ValueTangent = TrajectoryValues;
 
 /// The member's name: "q", "qdot", "measured", "u", "p".
@@ -20,19 +20,19 @@ using ValueTangent = TrajectoryValues;
 
 /// Rows of a member.
 [[nodiscard]] Eigen::Index field_rows(const TrajectoryValues& values, ValueField field);
-/// Columns of a member: N + 1; N of kU; 1 of kP.
+/// Columns of a member: N + 1; N for kU; 1 for kP.
 [[nodiscard]] Eigen::Index field_columns(const TrajectoryValues& values, ValueField field);
 
 /// The number at a place.
 /// @throws InvalidInput naming the place if the values have none there
 [[nodiscard]] double value_at(const TrajectoryValues& values, const ValuePlace& place);
-/// The same, to be written.
+/// The same, writable.
 [[nodiscard]] double& value_at(TrajectoryValues& values, const ValuePlace& place);
-/// The partial by the number at a place, to be written.
+/// The partial derivative with respect to the number at a place, writable.
 /// @throws InvalidInput naming the place if the partials have none there
 [[nodiscard]] double& partial_at(TrajectoryPartials& partials, const ValuePlace& place);
 
-/// How partials move along a tangent of the values: adds second_i · (δb at a, δa at b) for each
+/// How partials change along a tangent of the values: adds second_i · (δb at a, δa at b) for each
 /// place.
 ///
 /// @param places   as second_places() lists them; rows are not read

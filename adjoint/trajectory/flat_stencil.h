@@ -7,9 +7,8 @@
 
 namespace hbar {
 
-/// How a stage's q̇, q̈ and step start move with the coordinates of one stage (formulation §4's
-/// w^q̇ and w^Δ/c), Weight being a number, or a 3 x 3 block for exponential coordinates that changed
-/// chart in between.
+/// How a stage's q̇, q̈ and step start depend on the coordinates of one stage (doc/integrators.md).
+/// Weight is a number, or a 3 x 3 block for exponential coordinates that changed chart in between.
 template <typename Weight>
 struct StencilEntry {
   int stage = 0;
@@ -26,13 +25,13 @@ struct FlatStencil {
   std::vector<StencilEntry<Weight>> entries;  ///< ascending by stage; the stage itself is last
   Weight a_by_qdot0;                          ///< ∂q̈/∂q̇₀
   Weight start_qdot_by_qdot0;                 ///< ∂(q̇ at the step's start)/∂q̇₀
-  bool reaches_start = false;                 ///< whether stage 0 matters at all
+  bool reaches_start = false;                 ///< whether stage 0 is reached at all
 };
 
-/// Weights of all coordinates that did not change chart.
+/// Weights for all coordinates that did not change chart.
 [[nodiscard]] FlatStencil<double> flat_stencil(const Timeline& timeline, int stage);
 
-/// Weights of one exponential node, whose chart changed somewhere along the stencil.
+/// Weights for one exponential node whose chart changed somewhere along the stencil.
 [[nodiscard]] FlatStencil<Eigen::Matrix3d> flat_stencil(const Model& model,
                                                         const Trajectory& trajectory, int stage,
                                                         int node);

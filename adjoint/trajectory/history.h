@@ -7,8 +7,8 @@ namespace hbar {
 
 /// How a stage's rates and step start depend on earlier stages, through changes of chart.
 ///
-/// Along an edge (stage ← earlier) coordinates pass unchanged, but for the exponential nodes whose
-/// chart changed in between: their r passes as φ(r) and their rate as Dφ(r) ṙ.
+/// Along an edge (stage ← earlier) coordinates pass unchanged, except for exponential nodes whose
+/// chart changed in between: their r becomes φ(r), and their rate Dφ(r) ṙ.
 ///
 /// Borrows the model. Holds a little workspace and belongs to one thread at a time.
 class History {
@@ -20,7 +20,7 @@ class History {
   void switched_nodes(const Trajectory& trajectory, int earlier, int stage,
                       std::vector<int>& nodes) const;
 
-  /// The parts of q̇ and q̈ that the past fixes, and the state at the step's start.
+  /// The parts of q̇ and q̈ that earlier stages determine, and the state at the step's start.
   ///
   /// @param qdot_past  Σ weight q_j                                              [dof]
   /// @param a_past     Σ weight q̇_j                                              [dof]
@@ -28,8 +28,8 @@ class History {
               Eigen::VectorXd& a_past, StepStart<double>& start) const {
     gather<double>(trajectory, trajectory.q, trajectory.qdot, stage, qdot_past, a_past, start);
   }
-  /// The same from coordinates and rates that are not the trajectory's own: dual numbers for its
-  /// tangent.
+  /// The same for coordinates and rates other than the trajectory's own, such as dual numbers for
+  /// its tangent.
   ///
   /// @param q, qdot  per stage                                        [dof x stages]
   template <Scalar S>

@@ -21,31 +21,31 @@ struct SimulationOptions {
   std::string integrator = "bdf1";  ///< a name of integrators()
   double h = 0.02;                  ///< time step, time
   int steps = 100;                  ///< N
-  /// Steps at whose beginning a multistep method starts anew, as after an event; 0 … N − 1. BDF2
-  /// then takes a step of SDIRK2 there.
+  /// Steps at whose beginning a multistep method restarts, as after an event; 0 … N − 1. BDF2 takes
+  /// one step of SDIRK2 there.
   std::vector<int> restarts = {};
   solvers::NewtonOptions newton = {};
-  /// Further rows of TrajectoryValues::measured, for objectives and constraints to read.
+  /// Additional rows of TrajectoryValues::measured for objectives and constraints.
   std::vector<Measurement> measurements = {};
   int max_halvings = 10;                    ///< of a step that does not converge; each is recorded
-  bool keep_factors = true;                 ///< for the adjoint; dropped if they exceed max_memory
+  bool keep_factors = true;                 ///< for the adjoint; not kept if they exceed max_memory
   double max_memory = 4e9;                  ///< bytes that a trajectory may take
   const std::atomic<bool>* stop = nullptr;  ///< checked before each step
 };
 
-/// The set-up of a trajectory: a model, which of its parameters are free, and how to simulate it.
-/// Everything that computes trajectories, their values or their derivatives is made from one.
+/// The set-up of a trajectory: a model, its free parameters, and how to simulate it. Everything
+/// that computes trajectories, their values or their derivatives is constructed from one.
 ///
-/// Immutable. Copies share what they hold and are cheap; any number of threads may read one.
+/// Immutable. Copies share their data and are cheap; any number of threads may read one.
 class Horizon {
  public:
   /// @throws InvalidInput for an unknown integrator, h or steps that are not positive, a horizon
   ///         that would not fit into options.max_memory, or measurements that the model cannot have
   Horizon(Model model, ParameterSet parameters, SimulationOptions options);
-  /// The same of a model that others use, too.
+  /// The same for a shared model.
   Horizon(std::shared_ptr<const Model> model, ParameterSet parameters, SimulationOptions options);
 
-  /// The same model and parameters, simulated otherwise.
+  /// The same model and parameters with other options.
   /// @throws InvalidInput as the constructors
   [[nodiscard]] Horizon with(SimulationOptions options) const;
 
@@ -56,10 +56,11 @@ class Horizon {
   [[nodiscard]] const Integrator& integrator() const { return *data_->integrator; }
   /// N.
   [[nodiscard]] int steps() const { return data_->options.steps; }
-  /// Whether trajectories keep the factors of their stages' Jacobians: asked for, and they fit.
+  /// Whether trajectories keep the factors of their stages' Jacobians: requested, and within
+  /// max_memory.
   [[nodiscard]] bool keeps_factors() const { return data_->keeps_factors; }
 
-  /// Parameters at their nominal values, controls and initial state zero.
+  /// Parameters at their nominal values; controls and initial state zero.
   [[nodiscard]] Inputs nominal_inputs() const;
   /// The model's numbers with parameters applied.
   ///
@@ -71,7 +72,7 @@ class Horizon {
 
   /// All that is measured: model_measurements, then SimulationOptions::measurements.
   [[nodiscard]] const std::vector<Measurement>& measurements() const { return data_->measurements; }
-  /// Whose the rows of TrajectoryValues::measured are.
+  /// Which rows of TrajectoryValues::measured belong to what.
   [[nodiscard]] const MeasuredRows& measured_rows() const { return data_->measured_rows; }
   /// Their names: "NAME" or "NAME.x", … of each measurement.
   [[nodiscard]] const std::vector<std::string>& measured_names() const {

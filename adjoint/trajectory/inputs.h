@@ -4,7 +4,7 @@
 
 namespace hbar {
 
-/// What a simulation is a function of. Time runs along columns.
+/// The inputs of a simulation. Time runs along columns.
 struct Inputs {
   Eigen::VectorXd p;   ///< design parameters, in the ParameterSet's order      [parameters]
   Eigen::MatrixXd u;   ///< controls, column k acts during step k               [controls x steps]
@@ -12,8 +12,8 @@ struct Inputs {
   Eigen::VectorXd qdot0;  ///< their rates                                         [dof]
 };
 
-/// The step whose control measurements at the end of step k − 1 read: the one that ends there; at
-/// the start, the first.
+/// The step whose control is read by measurements at time k h: the step that ends there; at k = 0,
+/// the first.
 [[nodiscard]] constexpr int measured_step(int k) { return k > 0 ? k - 1 : 0; }
 
 }  // namespace hbar

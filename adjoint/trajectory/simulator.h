@@ -18,11 +18,11 @@ struct RolloutReport {
   int steps_done = 0;
   double time = 0.0;                  ///< reached
   double smallest_h = 0.0;            ///< of all steps and their parts
-  solvers::NewtonReport last_newton;  ///< of the stage that was computed last
-  std::string message;                ///< empty if converged; else what happened and what to try
+  solvers::NewtonReport last_newton;  ///< of the last stage computed
+  std::string message;                ///< empty if converged, else what happened and what to try
 };
 
-/// A simulation's outcome: a report, and the trajectory as far as it got.
+/// A simulation's outcome: a report, and the trajectory up to where it stopped.
 class [[nodiscard]] Rollout {
  public:
   Rollout(RolloutReport report, Trajectory trajectory)
@@ -30,11 +30,11 @@ class [[nodiscard]] Rollout {
 
   [[nodiscard]] bool converged() const { return report_.status == RolloutStatus::kConverged; }
   [[nodiscard]] const RolloutReport& report() const { return report_; }
-  /// The whole trajectory.
-  /// @throws NumericalFailure with the report's message if it is not whole
+  /// The complete trajectory.
+  /// @throws NumericalFailure with the report's message if it is incomplete
   [[nodiscard]] const Trajectory& trajectory() const&;
   [[nodiscard]] Trajectory trajectory() &&;
-  /// What was reached, whole or not.
+  /// The trajectory as far as it got, complete or not.
   [[nodiscard]] const Trajectory& partial() const { return trajectory_; }
 
  private:
@@ -52,9 +52,9 @@ class Simulator {
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
 
-  /// Simulates. A step whose Newton solve fails is halved, up to max_halvings times over.
+  /// Simulates. A step whose Newton solve fails is halved, up to max_halvings times.
   ///
-  /// @throws InvalidInput if an input has another shape, is not finite or is not physical
+  /// @throws InvalidInput if an input has another shape, is not finite, or is not physical
   Rollout rollout(const Inputs& inputs);
 
   [[nodiscard]] const Horizon& horizon() const { return horizon_; }
@@ -73,7 +73,7 @@ class Simulator {
   std::unique_ptr<Workspace> work_;
 };
 
-/// Simulates once: a Simulator's rollout.
+/// Simulates once with a temporary Simulator.
 /// @throws InvalidInput as Simulator::rollout
 Rollout simulate(const Horizon& horizon, const Inputs& inputs);
 

@@ -14,12 +14,12 @@ struct StageWeight {
   friend bool operator==(const StageWeight&, const StageWeight&) = default;
 };
 
-/// One block of unknowns q of the trajectory q̄, and how its rates follow from states:
+/// One block of unknowns q of the trajectory q̄, and how its rates follow from the states:
 /// q̇ = rate q + Σ weight q_j and q̈ = rate q̇ + Σ weight q̇_j over the earlier stages.
 struct Stage {
   static constexpr int kMaxHistory = 3;
 
-  int step = -1;      ///< whose controls act
+  int step = -1;      ///< the step whose controls act
   double time = 0.0;  ///< at its end
   double rate = 0.0;  ///< C_own / h, 1/time
   int start = 0;      ///< stage at which its step (or part of one) starts
@@ -30,25 +30,26 @@ struct Stage {
 };
 
 /// The stages of a trajectory in time order. Stage 0 is the initial state: its q and q̇ are given.
-/// Everything that linear algebra needs to know of time stepping is here; a step that was halved
-/// and a restarted method are just other rows.
+/// Holds everything that linear algebra needs to know about time stepping; halved steps and
+/// restarted methods are just further rows.
 class Timeline {
  public:
   Timeline();
 
-  /// Appends the stages of one step, or of a part of one, with step size h. A method that looks
-  /// back further than there are equal steps is started by its starter.
+  /// Appends the stages of one step, or of a part of one, with step size h. A method that needs
+  /// more equal steps than there are is started by its starter.
   ///
   /// @param step  index of the step whose controls act
   void append(const Integrator& integrator, int step, double h);
 
-  /// Makes the next step begin anew, as after an event: it looks back no further than its start.
+  /// Makes the next step a fresh start, as after an event: it looks back no further than its own
+  /// start.
   void restart() { ends_.back().h = 0.0; }
 
   /// Marks the last stage as the end of its step.
   void end_step() { step_ends_.push_back(last_stage()); }
 
-  /// Takes back everything after the first `stages` stages (an attempt that failed).
+  /// Removes everything after the first `stages` stages (a failed attempt).
   void truncate(int stages);
 
   [[nodiscard]] int stage_count() const { return static_cast<int>(stages_.size()); }
@@ -77,7 +78,7 @@ class Timeline {
 
 /// The stages of `steps` steps of size h, none of them halved.
 ///
-/// @param restarts  steps that begin anew
+/// @param restarts  steps at which the method restarts
 [[nodiscard]] Timeline even_timeline(const Integrator& integrator, double h, int steps,
                                      const std::vector<int>& restarts = {});
 

@@ -20,11 +20,11 @@ struct ChartSwitch {
   int node = 0;
 };
 
-/// A computed trajectory q̄: every stage's coordinates and rates, and what later passes reuse.
+/// A computed trajectory q̄: the coordinates and rates of every stage, and what later passes reuse.
 struct Trajectory {
   Timeline timeline;
   Inputs inputs;  ///< what it was computed from
-  /// The model's numbers with inputs.p applied, once for everything that reads the trajectory.
+  /// The model's numbers with inputs.p applied, computed once for all that read the trajectory.
   std::shared_ptr<const Mechanism<double>> mechanism;
   Eigen::MatrixXd q;                          ///< per stage, column 0 is q0      [dof x stages]
   Eigen::MatrixXd qdot;                       ///< per stage                      [dof x stages]

@@ -5,19 +5,18 @@
 
 namespace hbar {
 
-/// ḡ(q̄, p, u, q₀, q̇₀) at coordinates q̄ that need not solve it: the view of methods for which the
-/// whole trajectory is unknown. The timeline, and where charts change, are given.
+/// ḡ(q̄, p, u, q₀, q̇₀) at coordinates q̄ that need not make it zero, for methods whose unknown is
+/// the whole trajectory. The timeline and the chart switches are given.
 ///
 /// Holds its workspace for one horizon and belongs to one thread at a time.
 class TrajectoryResidual {
  public:
   explicit TrajectoryResidual(const Horizon& horizon);
 
-  /// Computes the rates of every stage from its coordinates, and ḡ with them.
+  /// Computes the rates of every stage from the coordinates, and then ḡ.
   ///
-  /// @param trajectory  of this horizon's model; q, timeline, inputs and mechanism are read, and
-  /// column 0 of
-  ///                    qdot; the other columns of qdot are overwritten
+  /// @param trajectory  of this horizon's model; q, timeline, inputs, mechanism and column 0 of
+  ///                    qdot are read; the other columns of qdot are overwritten
   /// @returns  ḡ, stage by stage; valid until the next call                     [dof·(stages − 1)]
   const Eigen::VectorXd& evaluate(Trajectory& trajectory);
 

@@ -4,15 +4,15 @@
 
 namespace hbar {
 
-/// Which rows are whose in TrajectoryValues::measured: the end effectors' first, then the tactile
-/// sensors', then those of SimulationOptions::measurements.
+/// Which rows of TrajectoryValues::measured belong to what: first the end effectors', then the
+/// tactile sensors', then those of SimulationOptions::measurements.
 struct MeasuredRows {
-  Eigen::Index variables = 0;  ///< of the end effectors: the document's auxiliary variables v
+  Eigen::Index variables = 0;  ///< of the end effectors: the auxiliary variables v
   Eigen::Index tactile = 0;    ///< of the tactile sensors
 };
 
-/// The numbers that a model measures, or something by each of them. Time runs along columns,
-/// k = 0 … N.
+/// The numbers that a model measures, or a derivative with respect to each of them. Time runs along
+/// columns, k = 0 … N.
 struct Measured {
   Eigen::MatrixXd measured = {};  ///<                                       [measured x N+1]
   MeasuredRows measured_rows = {};
@@ -27,7 +27,7 @@ struct Measured {
   [[nodiscard]] auto tactile() const {
     return measured.middleRows(measured_rows.variables, measured_rows.tactile);
   }
-  /// What SimulationOptions::measurements ask for.                           [declared x N+1]
+  /// The rows of SimulationOptions::measurements.                            [declared x N+1]
   [[nodiscard]] auto declared() { return measured.bottomRows(declared_count()); }
   [[nodiscard]] auto declared() const { return measured.bottomRows(declared_count()); }
   [[nodiscard]] Eigen::Index declared_count() const {
@@ -35,7 +35,8 @@ struct Measured {
   }
 };
 
-/// What objectives, constraints and result files read. Time runs along columns, k = 0 … N.
+/// The numbers that objectives, constraints and result files read. Time runs along columns, k = 0 …
+/// N.
 struct TrajectoryValues : Measured {
   double h = 0.0;        ///< nominal time step
   Eigen::MatrixXd q;     ///< rad or length                               [dof x N+1]

@@ -26,8 +26,8 @@ struct PartialPlace {
   [[nodiscard]] ValuePlace place() const { return {field, step, index}; }
 };
 
-/// Two numbers by which a row has a second partial, ∂²c_row/∂a∂b. A pair is listed once, in either
-/// order, and stands for (b, a) as well.
+/// Two numbers with respect to which a row has a second partial, ∂²c_row/∂a∂b. A pair is listed
+/// once, in either order, and stands for (b, a) as well.
 struct SecondPlace {
   int row = 0;  ///< of its term
   ValuePlace a;

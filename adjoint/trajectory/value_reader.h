@@ -8,18 +8,18 @@
 
 namespace hbar {
 
-/// Reads off trajectories what objectives, constraints and people want to know.
+/// Extracts from trajectories the numbers that objectives, constraints and users need.
 ///
 /// Holds its workspace and belongs to one thread at a time.
 class ValueReader {
  public:
   explicit ValueReader(Horizon horizon);
 
-  /// The values at the steps' ends of a trajectory of the horizon. Measurements read the control of
-  /// the step that ends, at k = 0 that of the first step.
+  /// The values of a trajectory of the horizon at the ends of its steps. Measurements read the
+  /// control of the step that ends, and at k = 0 that of the first step.
   [[nodiscard]] TrajectoryValues values(const Trajectory& trajectory);
 
-  /// What each contact did at the steps' ends: [step 0 … N][contact].
+  /// What each contact did at the ends of the steps: [step 0 … N][contact].
   [[nodiscard]] std::vector<std::vector<ContactSummary>> contact_history(
       const Trajectory& trajectory);
 
@@ -39,7 +39,8 @@ class ValueReader {
 [[nodiscard]] std::vector<std::vector<ContactSummary>> contact_history(
     const Horizon& horizon, const Trajectory& trajectory);
 
-/// What is measured of a trajectory, sized but zero: what terms ask for before there is one.
+/// The values of a trajectory, correctly sized but zero: for terms that need the shape before there
+/// is a trajectory.
 [[nodiscard]] TrajectoryValues value_shape(const Horizon& horizon);
 
 }  // namespace hbar

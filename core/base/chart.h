@@ -9,7 +9,7 @@
 namespace hbar {
 
 /// Exponential coordinates leave their chart at a step's end where ‖r‖ exceeds this (rad): well
-/// before the singularity at 2π, and late enough that a rotation to and fro stays in one chart.
+/// before the singularity at 2π, and late enough that small oscillations stay in one chart.
 inline constexpr double kChartLimit = 1.5 * std::numbers::pi;
 
 /// The same rotation in the other chart, φ(r) = (1 − 2π/‖r‖) r. φ is its own inverse for

@@ -8,25 +8,25 @@
 
 namespace hbar {
 
-/// The 64-bit FNV-1a hash of a string of bytes that comes in parts. Every byte acts on the state
-/// one to one, so that a changed byte always changes the sum. It guards against accidents, not
-/// against people.
+/// The 64-bit FNV-1a hash of a byte string that arrives in parts. For each byte the update of the
+/// state is one-to-one, so that changing one byte always changes the sum. Guards against accidents,
+/// not against tampering.
 class Checksum {
  public:
-  /// Takes bytes in.
+  /// Adds bytes.
   void add(std::string_view bytes) {
     for (const char byte : bytes) {
       sum_ = (sum_ ^ static_cast<unsigned char>(byte)) * std::uint64_t{0x100000001b3};
     }
   }
-  /// Takes in the bytes of a number, as they are in memory.
+  /// Adds the bytes of a number, as they are in memory.
   template <typename Number>
   requires std::is_arithmetic_v<Number>
   void add(Number number) {
     const auto bytes = std::bit_cast<std::array<char, sizeof number>>(number);
     add(std::string_view(bytes.data(), bytes.size()));
   }
-  /// The sum of what came in.
+  /// The checksum of what was added.
   [[nodiscard]] std::uint64_t value() const { return sum_; }
 
  private:

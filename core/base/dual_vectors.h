@@ -4,7 +4,7 @@
 
 namespace hbar {
 
-/// value + ε slope, entry by entry, of two vectors or matrices of one shape.
+/// value + ε slope, entry by entry, from two vectors or matrices of equal shape.
 template <typename Value, typename Slope>
 [[nodiscard]] MatrixX<Dual> dual_matrix(const Eigen::MatrixBase<Value>& value,
                                         const Eigen::MatrixBase<Slope>& slope) {

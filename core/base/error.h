@@ -12,8 +12,8 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A caller's mistake: an argument or a file that says something that is not allowed. The message
-/// says where, what was found and what is allowed; for a scene it begins with `file:line:`.
+/// A caller's mistake: an argument or a file with content that is not allowed. The message says
+/// where, what was found and what is allowed; for a scene it begins with `file:line:`.
 class InvalidInput : public Error {
  public:
   using Error::Error;
@@ -25,14 +25,14 @@ class IoError : public Error {
   using Error::Error;
 };
 
-/// A numerical outcome that the caller asked to have refused: a trajectory, a gradient or a linear
-/// solution that would not be right. The message says where, how far it got and what to try.
+/// A numerical failure: a trajectory, a gradient or a linear solution that would not be right. The
+/// message says where, how far it got and what to try.
 class NumericalFailure : public Error {
  public:
   using Error::Error;
 };
 
-/// One string of all arguments, each written as `operator<<` writes it.
+/// All arguments in one string, each written by `operator<<`.
 template <typename... Parts>
 [[nodiscard]] std::string concat(const Parts&... parts) {
   std::ostringstream out;

@@ -7,8 +7,8 @@ namespace hbar {
 /// A hyper-dual number a + b ε₁ + c ε₂ + d ε₁ε₂ with ε₁² = ε₂² = 0: a value, its derivatives along
 /// two directions, and its second derivative along both (J. Fike, J. Alonso, AIAA 2011-886).
 ///
-/// Every formula templated on the scalar gives, on HyperDual, exact second derivatives. It is meant
-/// for small formulas; the simulation itself computes with double and Dual.
+/// Any formula templated on the scalar gives exact second derivatives with HyperDual. Meant for
+/// small formulas; the simulation itself computes with double and Dual.
 struct HyperDual {
   double value = 0.0;    ///< a
   double slope_1 = 0.0;  ///< b, along the first direction
@@ -52,7 +52,7 @@ struct HyperDual {
   }
 };
 
-/// f(a), from f, f' and f'' at a's value.
+/// f(a), given f, f' and f'' at a's value.
 [[nodiscard]] constexpr HyperDual chain_rule(const HyperDual& a, double f, double f1, double f2) {
   return {f, f1 * a.slope_1, f1 * a.slope_2, f1 * a.cross + f2 * a.slope_1 * a.slope_2};
 }

@@ -22,7 +22,7 @@ template <Scalar S>
 template <Scalar S>
 [[nodiscard]] Matrix3<S> right_jacobian_inverse(const Vector3<S>& r);
 
-/// Right Jacobian of exp and what differentiating S(r) ṙ = J_r(r) ṙ twice needs.
+/// The right Jacobian of exp and everything needed to differentiate S(r) ṙ = J_r(r) ṙ twice.
 ///
 /// With T[x, y] = Σ_k ∂(J_r x)/∂r_k y_k, the derivative of J_r(r) x along y. Exact to rounding for
 /// all ‖r‖ < 2π, r = 0 included (functions of stumpff.h).
@@ -45,7 +45,7 @@ template <Scalar S>
 
 /// Rotation vector r with exp([r]) = R and ‖r‖ ≤ π, rad.                         [3]
 [[nodiscard]] Eigen::Vector3d log_rotation(const Eigen::Matrix3d& R);
-/// The same with its derivative along the direction that R carries; ‖r‖ < π.        [3]
+/// The same with the derivative along the direction carried by R; ‖r‖ < π.          [3]
 template <std::same_as<Dual> S>
 [[nodiscard]] Vector3<S> log_rotation(const Matrix3<S>& R);
 

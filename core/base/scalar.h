@@ -15,7 +15,7 @@ namespace hbar {
 
 /// A dual number a + b ε with ε² = 0: a value and its derivative along one direction.
 ///
-/// Every formula templated on the scalar gives, on Dual, its exact directional derivative.
+/// Any formula templated on the scalar gives its exact directional derivative with Dual.
 struct Dual {
   double value = 0.0;  ///< a
   double slope = 0.0;  ///< b
@@ -89,7 +89,7 @@ struct Dual {
 [[nodiscard]] constexpr double value_of(double a) { return a; }
 [[nodiscard]] constexpr double value_of(const Dual& a) { return a.value; }
 
-/// The two numbers hbar computes with.
+/// The two number types hbar computes with.
 template <typename S>
 concept Scalar = std::same_as<S, double> || std::same_as<S, Dual>;
 

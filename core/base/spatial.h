@@ -30,8 +30,8 @@ template <Scalar S>
   return {X_AB.R.transpose(), -(X_AB.R.transpose() * X_AB.p)};
 }
 
-// The functions of 6-vectors below work number by number: Eigen's packets would wait for numbers
-// just computed to reach memory.
+// The functions of 6-vectors below work entry by entry: Eigen's vectorised loads would stall on
+// entries that have just been stored.
 
 /// The 6-vector of two 3-vectors, rotation part first.
 template <Scalar S>
@@ -64,7 +64,7 @@ template <Scalar S>
   return out;
 }
 
-/// V × W on twists: the rate of W carried along by V (formulation "ad").
+/// V × W = ad(V) W on twists: the rate of W carried along by V.
 template <Scalar S>
 [[nodiscard]] inline Vector6<S> cross_twist(const Vector6<S>& V, const Vector6<S>& W) {
   Vector6<S> out;

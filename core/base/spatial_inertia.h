@@ -64,10 +64,10 @@ template <Scalar S>
   return I_A;
 }
 
-/// The velocity-dependent operator of formulation §2,
-/// B W = −I (V × W) + W ×* (I V) + V ×* (I W), in closed form.
+/// The velocity-dependent operator of doc/notation.md, B W = −I (V × W) + W ×* (I V) + V ×* (I W),
+/// in closed form.
 ///
-/// With I = (m, h, Σ) and V = (w; u) the terms in W's translation cancel, and what is left is
+/// With I = (m, h, Σ) and V = (w; u) the terms in W's translation cancel, which leaves
 /// B W = (C ω; 2 ω × p) with C = −2([w] Σ + [h] [u]) and p the linear momentum. Additive over
 /// bodies.
 template <Scalar S>

@@ -10,9 +10,9 @@ namespace hbar {
 /// The Stumpff functions c_n(s) = Σ_k (−s)^k / (2k + n)!  for n = 0 … 7, with s = θ².
 ///
 /// c_0 = cos θ, c_1 = sin θ / θ, c_2 = (1 − cos θ)/θ², c_3 = (θ − sin θ)/θ³, … Each is an entire
-/// function, so that no formula built from them has a singularity at θ = 0. They satisfy
-/// c_n = 1/n! − s c_{n+2} and, without any division, dc_n/ds = (n c_{n+2} − c_{n+1}) / 2.
-/// Accurate to rounding for 0 ≤ s ≤ (2π)².
+/// function, so that formulas built from them have no singularity at θ = 0. They satisfy
+/// c_n = 1/n! − s c_{n+2} and, without any division, dc_n/ds = (n c_{n+2} − c_{n+1}) / 2. Accurate
+/// to rounding for 0 ≤ s ≤ (2π)².
 ///
 /// Source: K. Stumpff, Himmelsmechanik I (1959), §41; the derivative follows from the series.
 template <Scalar S>
@@ -23,7 +23,7 @@ template <Scalar S>
   constexpr std::array<double, 8> kInverseFactorial = {
       1.0, 1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0};
   std::array<S, 8> c;
-  // Downward from a series where that loses nothing, upward from sin and cos elsewhere.
+  // Downward recursion from a series where that is accurate, upward from sin and cos elsewhere.
   constexpr double kSeriesLimit = 9.0;
   if (value_of(s) < kSeriesLimit) {
     constexpr int kTerms = 14;

@@ -6,7 +6,7 @@
 
 namespace hbar {
 
-/// How a body moves, in the world frame, twists at its origin.
+/// The motion of a body in the world frame, twists at the world's origin.
 template <Scalar S>
 struct BodyMotion {
   RigidTransform<S> X_WB = {};        ///< body frame in the world
@@ -27,8 +27,8 @@ template <Scalar S>
           joint.V};
 }
 
-/// Covectors on bodies: how a scalar answers to displacing a link's body, its twist being carried
-/// along, and to its twist alone, both in the world frame.
+/// Covectors on bodies: derivatives of a scalar with respect to displacing a link's body, with its
+/// twist carried along, and with respect to its twist alone, both in the world frame.
 template <Scalar S>
 struct LinkCovectors {
   explicit LinkCovectors(int links)

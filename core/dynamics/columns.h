@@ -4,7 +4,7 @@
 
 namespace hbar {
 
-/// Weights of the combination  q ∂ID/∂q + v ∂ID/∂q̇ + a M  (formulation §4: one block of H̄).
+/// Weights of the combination q ∂ID/∂q + v ∂ID/∂q̇ + a M (one block of H̄).
 template <Scalar S>
 struct JacobianWeights {
   S q = S(0.0);
@@ -12,21 +12,20 @@ struct JacobianWeights {
   S a = S(0.0);
 };
 
-/// Derivatives of inverse dynamics by displacement columns (formulation §3).
+/// Derivatives of inverse dynamics by displacement columns (doc/notation.md, "Columns").
 ///
 /// Each coordinate is a way to displace a subtree rigidly. Because rows are linear in a column's
-/// pair (Ψ̈, Ψ̇), any combination of ∂ID/∂q, ∂ID/∂q̇ and M costs what one of them costs: combine the
-/// columns first, then project. Sized once, reused; call after subtree_dynamics.
+/// pair (Ψ̈, Ψ̇), any combination of ∂ID/∂q, ∂ID/∂q̇ and M costs as much as one of them: combine
+/// the columns first, then project. Sized once, reused; call after subtree_dynamics.
 template <Scalar S>
 class Columns {
  public:
   explicit Columns(const Tree& tree);
 
-  /// The displacements themselves, which any number of projections then share.
-  /// Allocates nothing.
+  /// Computes the displacements, which any number of projections then share. Allocates nothing.
   void prepare(const Tree& tree, const Motion<S>& motion, const Dynamics<S>& dynamics);
 
-  /// One combination, after prepare.
+  /// Computes one combination, after prepare.
   ///
   /// @param jacobian  the combination, rows by residual, columns by coordinate; entries of
   ///                  unrelated branches are set to zero                       [dof x dof]
@@ -54,7 +53,7 @@ class Columns {
   Eigen::Matrix<S, Eigen::Dynamic, 9> rows_below_;  // I^C J_l and the angular half of (B^C)ᵀ J_l
 };
 
-/// A frame that displaces what stands below it: a joint's rest frame or a body frame
+/// A frame that displaces everything below it: a joint's rest frame or a body frame
 /// (Table II, I and II).
 template <Scalar S>
 struct FrameDisplacement {
@@ -62,7 +61,7 @@ struct FrameDisplacement {
   Vector6<S> psi_ddot;  ///< Ψ̈
 };
 
-/// Ψ̇ and Ψ̈ of a world twist D that is carried by a node moving as `carrier`.
+/// Ψ̇ and Ψ̈ of a world twist D carried by a node that moves as `carrier`.
 template <Scalar S>
 [[nodiscard]] inline FrameDisplacement<S> frame_displacement(const NodeMotion<S>& carrier,
                                                              const Vector6<S>& D) {

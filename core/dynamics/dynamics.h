@@ -11,11 +11,11 @@ template <Scalar S>
 struct BodyDynamics {
   SpatialInertia<S> I;    ///< mass distribution
   CoriolisOperator<S> B;  ///< velocity-dependent operator
-  Vector6<S> F;           ///< rate of momentum less outer forces, a wrench     [6]
+  Vector6<S> F;           ///< rate of momentum minus external forces, a wrench [6]
 };
 
-/// Backward pass of formulation §2: body quantities per link and their sums over the subtree of
-/// each node (I^C, B^C, F^C). Sized once, reused.
+/// Backward pass of the recursion (doc/notation.md): body quantities per link and their sums over
+/// the subtree of each node (I^C, B^C, F^C). Sized once, reused.
 template <Scalar S>
 struct Dynamics {
   explicit Dynamics(const Model& model);
@@ -37,15 +37,16 @@ struct Dynamics {
 /// with the accelerations and velocities that `motion` was computed at.
 ///
 /// @param tau       ID(q, q̇, a; p), torque or force                             [dof]
-/// @param wrenches  forces on bodies, per link, world; each is subtracted from its body's F, so
-///                  that tau is what joints must do besides; empty: none            n of [6]
+/// @param wrenches  external wrenches on bodies, per link, world; each is subtracted from its
+///                  body's F, so that tau is what the joints must add; empty: none   n of [6]
+///
 /// Allocates nothing.
 template <Scalar S>
 void inverse_dynamics(const Model& model, const Mechanism<S>& mechanism, const Motion<S>& motion,
                       Dynamics<S>& dynamics, Eigen::Ref<VectorX<S>> tau,
                       std::span<const Vector6<S>> wrenches = {});
 
-/// The same, and all subtree sums that derivatives need.
+/// The same, and all subtree sums needed by derivatives.
 template <Scalar S>
 void subtree_dynamics(const Model& model, const Mechanism<S>& mechanism, const Motion<S>& motion,
                       Dynamics<S>& dynamics, Eigen::Ref<VectorX<S>> tau,

@@ -4,7 +4,7 @@
 
 namespace hbar {
 
-/// Where a step started: what explicit position motors act on.
+/// The state at the start of a step, which explicit position motors read.
 template <Scalar S>
 struct StepStart {
   VectorX<S> q;     ///< rad or length                                            [dof]
@@ -23,16 +23,17 @@ struct MotorForce {
 };
 
 /// @param motor    which motor of the model
-/// @param u        its control for the coordinate
+/// @param u        the motor's control for the coordinate
 /// @param q, qdot  the coordinate and its rate, as the motor reads them
-/// At a kink the derivatives are those that compute_joint_forces tells of.
+///
+/// At a kink the derivatives are those described at compute_joint_forces.
 template <Scalar S>
 [[nodiscard]] MotorForce<S> motor_force(const Model& model, const Mechanism<S>& mechanism,
                                         int motor, const S& u, const S& q, const S& qdot);
 
 /// Generalised forces that act coordinate by coordinate, and their derivatives: joint springs,
-/// dampers, limit springs (f̃_r of (2)) and motors (u of (2)). Every derivative by a state is
-/// diagonal; every control acts on one coordinate.
+/// dampers, limit springs (f̃_r of (2)) and motors (u of (2)). Every derivative with respect to a
+/// state is diagonal; every control acts on one coordinate.
 template <Scalar S>
 struct JointForces {
   explicit JointForces(const Model& model);
@@ -51,8 +52,10 @@ struct JointForces {
 
 /// @param u      controls of the step                                            [controls]
 /// @param start  state at the step's start
-/// Allocates nothing. At a kink (limit reached, motor saturated) the derivative is that of the
-/// side which the force law closes: at |u| = 1 and at the motor's range the inner one.
+///
+/// Allocates nothing. At a kink (limit reached, motor saturated) the derivative is one-sided, from
+/// the side whose interval includes the kink: the inner one at |u| = 1 and at the end of the
+/// motor's range.
 template <Scalar S>
 void compute_joint_forces(const Model& model, const Mechanism<S>& mechanism, const VectorView<S>& q,
                           const VectorView<S>& qdot, const VectorView<S>& u,

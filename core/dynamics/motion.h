@@ -16,8 +16,8 @@ struct NodeMotion {
   Vector6<S> A;  ///< spatial acceleration with −gravity added (A₀ = −g)        [6]
 };
 
-/// What an exponential rotation adds: derivatives of its varying motion subspace, as world twists
-/// per coordinate c (formulation §3).
+/// Additional terms of an exponential rotation: derivatives of its varying motion subspace, as
+/// world twists per coordinate c (doc/notation.md, "Columns").
 template <Scalar S>
 struct ExponentialMotion {
   std::array<Vector6<S>, 3> W;                  ///< Ad ∂(S q̇)/∂q_c
@@ -26,12 +26,13 @@ struct ExponentialMotion {
   std::array<std::array<Vector6<S>, 3>, 3> dJ;  ///< [c][l]: Ad ∂S_l/∂q_c
 };
 
-/// Forward pass of formulation §2: how every node moves at (q, q̇, a). Sized once, reused.
+/// Forward pass of the recursion (doc/notation.md): the motion of every node at (q, q̇, a). Sized
+/// once, reused.
 template <Scalar S>
 struct Motion {
   explicit Motion(const Tree& tree);
 
-  /// Twist and acceleration of a node's parent; of the world below it all, if it has none.
+  /// Twist and acceleration of a node's parent, or of the world if it has none.
   [[nodiscard]] const NodeMotion<S>& parent_of(const Node& node) const {
     return node.parent < 0 ? world : nodes[static_cast<std::size_t>(node.parent)];
   }
@@ -58,8 +59,7 @@ template <Scalar S>
 void compute_motion(const Tree& tree, const Mechanism<S>& mechanism, const VectorView<S>& q,
                     const VectorView<S>& qdot, const VectorView<S>& a, Motion<S>& motion);
 
-/// World pose of the frame in which a link's joint starts to move: the parent's joint frame moved
-/// by X_PJ.
+/// World pose of a link's joint frame before the joint moves: the parent's joint frame times X_PJ.
 template <Scalar S>
 [[nodiscard]] RigidTransform<S> rest_frame(const Model& model, const Mechanism<S>& mechanism,
                                            const Motion<S>& motion, int link);

@@ -7,18 +7,18 @@ namespace hbar {
 
 /// The transpose of the derivatives of inverse dynamics, applied to one vector z in O(nodes).
 ///
-/// All of zᵀ ∂ID/∂(q, q̇, a) and of zᵀ ∂ID/∂p comes from two sums along the tree: the twist
+/// All of zᵀ ∂ID/∂(q, q̇, a) and zᵀ ∂ID/∂p follows from two sums along the tree: the twist
 /// W = Σ_path J_l z_l that z gives each node, and per subtree a = I^C W_λ + Σ z_l I^C_l J_l and
 /// b likewise with (B^C)ᵀ. A frame that displaces a subtree (joint coordinate, joint
-/// transformation, body transformation: formulation §3) then has one covector
+/// transformation, body transformation: doc/notation.md) then has one covector
 ///
 ///     G = −A_λ ×* a + V_λ ×* (V_λ ×* a) − V_λ ×* b − W_λ ×* F
 ///
-/// with zᵀ ∂ID/∂D = G·D for each of its displacement twists D. Wrenches on bodies that depend on
-/// the motion, as contact's do, add covectors on those bodies: those on displacements to G, those
-/// on twists to b. Hence two phases: weigh() gives the twists W that such covectors are made from,
-/// finish() takes them and sums. Sized once, reused; call after subtree_dynamics with the same
-/// motion. Allocates nothing.
+/// with zᵀ ∂ID/∂D = G·D for each of its displacement twists D. Wrenches that depend on the motion
+/// of bodies, such as contact wrenches, add covectors on those bodies: those on displacements to G,
+/// those on twists to b. Hence two phases: weigh() gives the twists W from which such covectors are
+/// computed, finish() takes the covectors and sums. Sized once, reused; call after subtree_dynamics
+/// with the same motion. Allocates nothing.
 template <Scalar S>
 class Pullback {
  public:
@@ -31,10 +31,10 @@ class Pullback {
   std::span<const Vector6<S>> weigh(const Model& model, const Motion<S>& motion,
                                     const Dynamics<S>& dynamics, const VectorView<S>& z);
 
-  /// Second phase: everything below.
+  /// Second phase: computes all results below.
   ///
   /// @param z         as given to weigh()                                        [dof]
-  /// @param external  covectors of wrenches on bodies; null: there are none
+  /// @param external  covectors of wrenches on bodies; null: none
   void finish(const Model& model, const Motion<S>& motion, const Dynamics<S>& dynamics,
               const VectorView<S>& z, const LinkCovectors<S>* external = nullptr);
 
@@ -42,13 +42,13 @@ class Pullback {
   VectorX<S> by_qdot;  ///< zᵀ ∂ID/∂q̇                                              [dof]
   VectorX<S> by_a;     ///< zᵀ M                                                   [dof]
 
-  /// Twist that z gives a node: Σ over its path of J_l z_l.                       [6]
+  /// The twist that z gives a node: Σ over its path of J_l z_l.                   [6]
   [[nodiscard]] const Vector6<S>& twist(int node) const {
     return twists_[static_cast<std::size_t>(node)];
   }
-  /// The same by node.
+  /// The same for all nodes.
   [[nodiscard]] std::span<const Vector6<S>> twists() const { return twists_; }
-  /// Covector of displacing everything from a joint's rest frame on; `node` is the first of its
+  /// Covector of displacing everything below a joint's rest frame; `node` is the first of its
   /// joint.                                                                       [6]
   [[nodiscard]] const Vector6<S>& joint_frame(int node) const {
     return joint_frames_[static_cast<std::size_t>(node)];

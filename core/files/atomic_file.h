@@ -5,13 +5,13 @@
 
 namespace hbar::scene {
 
-/// Writes a whole file or nothing: into a temporary file beside it, forced to the disk, then
-/// renamed into its place. A failure leaves an old file whole and no temporary one. Links are
-/// followed; an existing file keeps its permissions. What exists and is not a plain file (a pipe, a
+/// Writes a whole file or nothing: into a temporary file beside it, flushed to disk, then renamed
+/// into place. A failure leaves an old file intact and no temporary one. Links are followed; an
+/// existing file keeps its permissions. An existing target that is not a plain file (a pipe, a
 /// terminal) is written to directly.
 ///
 /// @param path  the file; its folder must exist
-/// @param text  what it shall hold
+/// @param text  its new contents
 /// @throws IoError with the path and the system's reason
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 

@@ -4,8 +4,8 @@
 
 namespace hbar {
 
-/// A signed distance φ given by data, in a body's frame: what a triangle mesh brings to a contact.
-/// Negative inside. Immutable, and safe to share between threads.
+/// A signed distance φ given by data, in a body's frame: the surface of a triangle mesh in a
+/// contact. Negative inside. Immutable, and safe to share between threads.
 class DistanceField {
  public:
   /// φ and its first two derivatives at a point.
@@ -20,8 +20,8 @@ class DistanceField {
   DistanceField& operator=(const DistanceField&) = delete;
   virtual ~DistanceField() = default;
 
-  /// A number that is < 0 only where φ is, and no larger than the distance to the surface outside:
-  /// cheap far away, φ itself nearby.
+  /// A number that is < 0 only where φ < 0 and that, outside, does not exceed the distance to the
+  /// surface: cheap far away, φ itself nearby.
   ///
   /// @param x  a point in the body's frame, length                                   [3]
   [[nodiscard]] virtual double lower_bound(const Eigen::Vector3d& x) const = 0;

@@ -12,7 +12,7 @@
 
 namespace hbar {
 
-/// Cells along the longest side of a distance grid, by default and as allowed. n cells take at most
+/// Cells along the longest side of a distance grid: default and allowed range. n cells take at most
 /// 8 (n + 9)³ bytes: 1.5 MB for 48, 149 MB for 256.
 inline constexpr int kDistanceCells = 48;
 inline constexpr int kMinDistanceCells = 4;    ///< fewest
@@ -21,10 +21,10 @@ inline constexpr int kMaxDistanceCells = 256;  ///< most
 /// The signed distance of a solid as the tricubic spline through its exact values at the nodes of a
 /// uniform grid, three cells wider than the solid on every side.
 ///
-/// The spline φ is the surface that contacts see. It is twice continuously differentiable, and errs
-/// by order cell⁴ where the distance is smooth, by a fraction of a cell where it has a kink: at
-/// sharp edges (which it rounds), in a gap or wall a few cells wide, and on the medial axis deep
-/// inside. max_error() says how much near the surface.
+/// The spline φ is the surface that contacts see. It is twice continuously differentiable. Its
+/// error is of order cell⁴ where the distance is smooth, and a fraction of a cell where it has a
+/// kink: at sharp edges (which are rounded), in a gap or wall a few cells wide, and on the medial
+/// axis deep inside. max_error() gives the error near the surface.
 class DistanceGrid final : public DistanceField {
  public:
   /// @param mesh   a closed surface in the body's frame, length, see TriangleDistance
@@ -32,13 +32,13 @@ class DistanceGrid final : public DistanceField {
   /// @throws InvalidInput as check_solid does, or if there are too few or too many cells
   explicit DistanceGrid(const TriangleMesh& mesh, int cells = kDistanceCells);
 
-  /// What `bytes` wrote.
+  /// Restores a grid from the result of bytes().
   ///
-  /// @throws InvalidInput if it is anything else: another version's, cut short, altered
+  /// @throws InvalidInput if it is anything else: of another version, truncated, altered
   explicit DistanceGrid(std::string_view bytes);
 
-  /// φ on the grid; outside, the distance to the bounding box of the mesh, which is positive there
-  /// as φ is.
+  /// φ on the grid; outside it, the distance to the bounding box of the mesh, which is positive
+  /// there, like φ.
   [[nodiscard]] double lower_bound(const Eigen::Vector3d& x) const override;
 
   /// Outside the grid φ grows along each axis as the distance to the grid does: half to
@@ -56,8 +56,8 @@ class DistanceGrid final : public DistanceField {
   /// The nodes of the grid.
   [[nodiscard]] const GridNodes& nodes() const { return state_.spline.nodes(); }
 
-  /// The whole grid as a string of bytes with a version and a checksum. Numbers are as in this
-  /// machine's memory: one of other byte order refuses them.
+  /// The whole grid as a string of bytes with a version and a checksum. Numbers are in this
+  /// machine's byte order; a machine with another byte order refuses them.
   [[nodiscard]] std::string bytes() const;
 
  private:

@@ -15,12 +15,11 @@ struct TriangleMesh {
 /// Refuses a surface that does not bound a solid.
 ///
 /// @throws InvalidInput that says where, for: no triangle; a vertex that is not finite; an index
-/// out
-///         of range; a triangle without area; an edge with one triangle (a hole) or more than two;
-///         two neighbours of opposite orientation; a surface whose inside is outside
+///         out of range; a triangle without area; an edge with one triangle (a hole) or more than
+///         two; two neighbours of opposite orientation; a surface turned inside out
 void check_solid(const TriangleMesh& mesh);
 
-/// The same surface with vertices of equal coordinates made one.
+/// The same surface with vertices of equal coordinates merged.
 [[nodiscard]] TriangleMesh merge_equal_vertices(const TriangleMesh& mesh);
 
 /// Whether every edge belongs to exactly two triangles.
@@ -33,10 +32,10 @@ struct SolidMoments {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre, density·length⁵ [3 x 3]
 };
 
-/// Exact moments of the solid a surface bounds: the sum, over its triangles, of those of the
-/// tetrahedra they span with one point of the surface.
+/// Exact moments of the solid bounded by a surface: the sum over its triangles of the moments of
+/// the tetrahedra they form with one point of the surface.
 ///
-/// @param mesh  closed and oriented, as check_solid wants it
+/// @param mesh  closed and oriented, as check_solid requires
 /// @throws InvalidInput if there is no triangle or the volume is not positive
 [[nodiscard]] SolidMoments solid_moments(const TriangleMesh& mesh);
 

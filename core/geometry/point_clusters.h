@@ -6,8 +6,8 @@
 
 namespace hbar {
 
-/// Contact points of a body in groups of neighbours, so that points far from a surface are passed
-/// over by the group.
+/// Contact points of a body in groups of neighbours, so that whole groups far from a surface can be
+/// skipped.
 struct PointClusters {
   std::vector<int> points;  ///< every point's index, cluster by cluster
   std::vector<int> first;  ///< of each cluster in `points`, and the end              [clusters + 1]
@@ -15,8 +15,7 @@ struct PointClusters {
   [[nodiscard]] int size() const { return static_cast<int>(first.size()) - 1; }
 };
 
-/// Splits points at the median of their largest extent until few are left together. The same points
-/// give the same clusters.
+/// Splits points at the median of their largest extent until each group is small. Deterministic.
 ///
 /// @param points  in the body frame                                               [3 x points]
 [[nodiscard]] PointClusters cluster_points(const Eigen::Matrix3Xd& points);

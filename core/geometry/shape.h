@@ -9,8 +9,8 @@
 
 namespace hbar {
 
-/// The solids a body can be. Lengths are the scene's; every shape stands in the body frame, centred
-/// at its centre of mass.
+/// A box. This and the other solid shapes are given in the body frame, centred at the centre of
+/// mass; lengths are in the scene's units.
 struct Cuboid {
   Eigen::Vector3d size = Eigen::Vector3d::Ones();  ///< side lengths along x, y, z  [3]
   friend bool operator==(const Cuboid& a, const Cuboid& b) { return a.size == b.size; }
@@ -38,8 +38,8 @@ struct NoShape {
 };
 using Shape = std::variant<NoShape, Cuboid, Sphere, Cylinder, Capsule>;
 
-/// How many lengths a shape is made of: 3 of a cuboid, 1 of a ball, 2 of a cylinder or a capsule,
-/// 0 of NoShape.
+/// The number of lengths that define a shape: 3 of a cuboid, 1 of a ball, 2 of a cylinder or a
+/// capsule, 0 of NoShape.
 [[nodiscard]] int size_count(const Shape& shape);
 
 /// Those lengths: a cuboid's x, y, z; a ball's radius; a cylinder's or a capsule's radius, length.
@@ -73,7 +73,7 @@ struct UnitSolid {
 template <Scalar S>
 [[nodiscard]] UnitSolid<S> unit_solid(const Shape& kind, const Vector3<S>& sizes);
 
-/// How they grow with one of the sizes, per length: ∂(mass, moments)/∂size_k.
+/// Their derivative with respect to one of the sizes, ∂(mass, moments)/∂size_k.
 ///
 /// @param k  which size, below size_count(kind)
 /// @throws InvalidInput for NoShape

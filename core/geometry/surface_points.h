@@ -6,7 +6,7 @@
 
 namespace hbar {
 
-/// How densely a solid's surface is sampled with contact points; each shape reads its own.
+/// How densely a solid's surface is sampled with contact points; each shape reads its own entry.
 struct SurfaceResolution {
   std::array<int, 3> cuboid = {6, 6, 6};  ///< grid points along x, y, z, ≥ 2 each
   std::array<int, 2> sphere = {0, 0};     ///< rings, points of each; 0 0: no points
@@ -17,7 +17,7 @@ struct SurfaceResolution {
 /// Contact points on the surface of a solid, in the body frame (doc/scene_format.md gives their
 /// order).
 ///
-/// @returns  [3 x points]; without columns for NoShape and for a sphere of resolution 0 0
+/// @returns  [3 x points]; no columns for NoShape and for a sphere of resolution 0 0
 /// @throws InvalidInput for a resolution that is too small
 [[nodiscard]] Eigen::Matrix3Xd surface_points(const Shape& shape,
                                               const SurfaceResolution& resolution = {});

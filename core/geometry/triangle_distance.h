@@ -9,15 +9,15 @@
 
 namespace hbar {
 
-/// Exact signed distance to the surface of a solid: negative inside, right to rounding everywhere.
-/// A tree of boxes finds the nearest triangle; the sign is that of the angle-weighted pseudonormal
-/// of the nearest face, edge or vertex (Bærentzen & Aanæs, IEEE TVCG 11(3), 2005), which is right
-/// on every closed surface that neither cuts nor touches itself. Immutable, and safe to share
-/// between threads.
+/// Exact signed distance to the surface of a solid: negative inside, accurate to rounding
+/// everywhere. A tree of boxes finds the nearest triangle; the sign is that of the angle-weighted
+/// pseudonormal of the nearest face, edge or vertex (Bærentzen & Aanæs, IEEE TVCG 11(3), 2005),
+/// which is right on every closed surface that neither cuts nor touches itself. Immutable, and safe
+/// to share between threads.
 class TriangleDistance {
  public:
-  /// @param mesh  a closed surface, length; where it is not closed, vertices of equal coordinates
-  ///              are made one first
+  /// @param mesh  a closed surface, length; if it is not closed, vertices of equal coordinates are
+  ///              merged first
   /// @throws InvalidInput as check_solid does
   explicit TriangleDistance(const TriangleMesh& mesh);
 
@@ -25,9 +25,9 @@ class TriangleDistance {
   /// @returns the distance, length; 0 on the surface
   [[nodiscard]] double signed_distance(const Eigen::Vector3d& x) const;
 
-  /// The same, sooner for one of many points that lie near each other.
+  /// The same, faster for a sequence of points that lie near each other.
   ///
-  /// @param[in,out] hint  0 at first, then what the point before left there
+  /// @param[in,out] hint  0 at first, then the value left by the previous point
   [[nodiscard]] double signed_distance(const Eigen::Vector3d& x, int& hint) const;
 
   /// The smallest box with edges along the axes that holds the surface.
@@ -44,10 +44,10 @@ class TriangleDistance {
   struct Nearest {
     double squared;          ///< distance²
     Eigen::Vector3d offset;  ///< from there to x
-    int triangle;            ///< whose point it is
+    int triangle;            ///< the triangle it lies on
     int feature;             ///< a Feature; kEdge + i runs from corner i, kVertex + i is corner i
   };
-  /// A box around some triangles: a leaf's own, or those of the two nodes it parts into.
+  /// A box around some triangles: a leaf's own, or those of its two child nodes.
   struct Node {
     Eigen::AlignedBox3d box;
     int first = 0;   ///< triangle of a leaf

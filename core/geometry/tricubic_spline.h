@@ -26,9 +26,9 @@ struct GridNodes {
 
 /// The tricubic spline through values at the nodes of a grid: twice continuously differentiable
 /// everywhere. Within the grid it is exact for cubic polynomials of each coordinate, and its error
-/// is of order spacing⁴ where what it interpolates is smooth, ³ in the gradient, ² in the Hessian
-/// (no-knot ends keep these orders up to the border). Outside it levels off to a constant along
-/// each axis within two spacings. Not a number in, not a number out.
+/// is of order spacing⁴ where the interpolated function is smooth, spacing³ in the gradient,
+/// spacing² in the Hessian (not-a-knot ends keep these orders up to the border). Outside it levels
+/// off to a constant along each axis within two spacings. NaN in, NaN out.
 class TricubicSpline {
  public:
   /// Value and first two derivatives at a point.
@@ -40,16 +40,16 @@ class TricubicSpline {
 
   /// The spline through values.
   ///
-  /// @param values  of the nodes, x runs fastest                                      [nodes]
-  /// @throws InvalidInput if an axis has fewer than 4 nodes, or the values are not as many as they
+  /// @param values  at the nodes, x runs fastest                                      [nodes]
+  /// @throws InvalidInput if an axis has fewer than 4 nodes, or the number of values is not that of
+  ///         the nodes
   [[nodiscard]] static TricubicSpline through(const GridNodes& nodes,
                                               const std::vector<double>& values);
 
-  /// The spline of known coefficients.
+  /// The spline with known coefficients.
   ///
   /// @param coefficients  of the B-splines centred at the nodes and at one more beyond each end of
-  ///                      each axis, x runs fastest                                   [Π(count +
-  ///                      2)]
+  ///                      each axis, x runs fastest                               [Π(count + 2)]
   /// @throws InvalidInput as `through` does
   TricubicSpline(const GridNodes& nodes, std::vector<double> coefficients);
 
@@ -57,12 +57,11 @@ class TricubicSpline {
   [[nodiscard]] double value(const Eigen::Vector3d& x) const;
   /// @param x  a point, length                                                        [3]
   [[nodiscard]] Jet jet(const Eigen::Vector3d& x) const;
-  /// Derivative of the Hessian along a direction: constant in a cell in that cell's own way, so it
-  /// jumps at the cells' borders.                                                     [3 x 3]
+  /// Derivative of the Hessian along a direction; jumps at the borders of cells.      [3 x 3]
   [[nodiscard]] Eigen::Matrix3d hessian_slope(const Eigen::Vector3d& x,
                                               const Eigen::Vector3d& direction) const;
 
-  /// What it was made with.
+  /// What it was constructed from.
   [[nodiscard]] const GridNodes& nodes() const { return nodes_; }
   [[nodiscard]] const std::vector<double>& coefficients() const { return coefficients_; }
 

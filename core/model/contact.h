@@ -20,7 +20,7 @@ struct ContactCoefficients {
 /// Normal force f_n at signed distance d < 0 with rate ḋ.
 enum class NormalLaw {
   kDocument,  ///< s (−k_n d + k_d ḋ d)  (13)
-  kLinear     ///< −k_n d − k_d ḋ: jumps at touch-down if damped
+  kLinear     ///< −k_n d − k_d ḋ: jumps at touchdown if damped
 };
 
 /// Friction at sliding velocity ṫ.
@@ -29,18 +29,18 @@ enum class FrictionLaw {
   kSmooth  ///< μ |f_n| |ṫ| / √(|ṫ|² + width²) against ṫ: smooth in ṫ; k_t is not used
 };
 
-/// Where the other body feels a point's force.
+/// Where a point's force acts on the other body.
 enum class Reaction {
-  kPoint,   ///< at the contact point: angular momentum is kept
-  kSurface  ///< at its own surface point x − d n, whose velocity counts, too
+  kPoint,   ///< at the contact point: angular momentum is conserved
+  kSurface  ///< at its own surface point x − d n, whose velocity counts too
 };
 
-/// The shape of the other body itself (Body::shape), with its present sizes.
+/// The other body's own shape (Body::shape), with its current sizes.
 struct OwnShape {
   bool caps = true;  ///< a cylinder's end faces count for its distance
   friend bool operator==(const OwnShape&, const OwnShape&) = default;
 };
-/// A half-space fixed in the other body's frame; in the world's where there is no other body.
+/// A half-space fixed in the other body's frame, or in the world's if there is no other body.
 struct Plane {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< on the plane, length      [3]
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< out of the solid, unit    [3]
@@ -52,8 +52,8 @@ struct Plane {
 using ContactSurface = std::variant<OwnShape, Plane, std::shared_ptr<const DistanceField>>;
 
 /// A declared contact: the points of one body against the signed distance of another, or of the
-/// world. A ball touches a plane with its deepest point, and so it does a body's own shape where it
-/// has no contact points; everything else touches with Body::contact_points.
+/// world. A ball touches a plane with its deepest point, and likewise a body's own shape if the
+/// ball has no contact points; all other bodies touch with Body::contact_points.
 struct Contact {
   std::string name = {};  ///< empty: "POINTS_BODY-OTHER_BODY"
   int link = 0;           ///< A: whose points
@@ -63,13 +63,13 @@ struct Contact {
   NormalLaw normal_law = NormalLaw::kDocument;
   FrictionLaw friction_law = FrictionLaw::kDocument;
   double friction_width = 0.0;  ///< of the smooth law, length/time, > 0 for it
-  bool adhesion = true;  ///< f_n may pull, where damping outweighs stiffness; else it stops at 0
+  bool adhesion = true;  ///< f_n may pull when damping outweighs stiffness; else it is cut off at 0
   Reaction reaction = Reaction::kPoint;
 
   friend bool operator==(const Contact&, const Contact&) = default;
 };
 
-/// Points on a body that read the contact force there; they exert none.
+/// Points on a body that measure the contact force there and exert none.
 struct TactileSensor {
   std::string name = {};
   int link = 0;                  ///< whose body carries the points

@@ -14,7 +14,7 @@ void for_each_drive(const Model& model, int motor, const F& f) {
   }
 }
 
-/// The same of all motors.
+/// The same for all motors.
 template <typename F>
 void for_each_drive(const Model& model, const F& f) {
   for (int motor = 0; motor < static_cast<int>(model.motors().size()); ++motor) {

@@ -72,19 +72,19 @@ using JointKind = std::variant<FixedJoint, RevoluteJoint, PrismaticJoint, Planar
                                TranslationalJoint, Free2dJoint, SphericalEulerJoint,
                                SphericalExpJoint, Free3dEulerJoint, Free3dExpJoint, UniversalJoint>;
 
-/// One of the four motions every joint is a chain of. Only the exponential rotation has a motion
-/// subspace that depends on its coordinates.
+/// The four elementary motions; every joint is a chain of them. Only the exponential rotation has a
+/// motion subspace that depends on its coordinates.
 enum class MotionKind { kFixed, kRotation, kTranslation, kExponential };
 
-/// One link of that chain.
+/// One element of that chain.
 struct ElementaryMotion {
   MotionKind kind = MotionKind::kFixed;
   Eigen::Vector3d axis =
       Eigen::Vector3d::Zero();  ///< unit, in its own frame; rotation, translation
 };
 
-/// The chain of elementary motions that a joint is, outermost (next to the parent) first. A fixed
-/// joint gives one motion without coordinates.
+/// The chain of elementary motions that makes up a joint, outermost (next to the parent) first. A
+/// fixed joint gives one motion without coordinates.
 [[nodiscard]] std::vector<ElementaryMotion> elementary_motions(const JointKind& kind);
 
 /// Number of coordinates of an elementary motion: 0, 1, 1, 3.
@@ -102,7 +102,7 @@ struct ElementaryMotion {
 /// Whether coordinate `i` of a joint is an angle (else it is a length).
 [[nodiscard]] bool is_angle(const JointKind& kind, int i);
 
-/// Springs that act outside an interval, the same for each coordinate of a joint.
+/// Springs that act outside an interval, which is the same for each coordinate of a joint.
 struct JointLimits {
   double lower = 0.0;      ///< rad or length
   double upper = 0.0;      ///< rad or length, ≥ lower
@@ -110,8 +110,8 @@ struct JointLimits {
   friend bool operator==(const JointLimits&, const JointLimits&) = default;
 };
 
-/// A joint: where its frame rests, how it moves, and the forces it exerts on itself,
-/// −stiffness (q − rest) − damping q̇ and the limit springs, per coordinate.
+/// A joint: the rest pose of its frame, how it moves, and its passive forces, −stiffness (q − rest)
+/// − damping q̇ and the limit springs, per coordinate.
 struct Joint {
   std::string name = {};
   JointKind kind = FixedJoint{};

@@ -7,9 +7,10 @@
 
 namespace hbar {
 
-/// The numbers of a model with parameters applied: what the recursions read.
+/// The numbers of a model with parameters applied, as the recursions read them.
 ///
-/// `nominal` gives the model's own; apply_parameters (parameters.h) changes the rest.
+/// nominal_mechanism gives the model's own; apply_parameters (parameters.h) sets those of a
+/// parameter set.
 template <Scalar S>
 struct Mechanism {
   std::vector<RigidTransform<S>> X_PJ;          ///< per link: joint frame at rest in the parent's
@@ -29,11 +30,12 @@ struct Mechanism {
   Vector3<S> gravity;                              ///< in the world frame, length/time²     [3]
   std::vector<SpatialInertia<S>> inertia;          ///< per link: of the body, from the joint frame
 
-  /// Recomputes inertia and the bounds on contact points after what they follow from has changed.
+  /// Recomputes inertia and the bounds on contact points after a change of the numbers they depend
+  /// on.
   void update_derived(const Model& model);
 };
 
-/// The mechanism whose parameters are the model's own.
+/// The mechanism with the model's own parameters.
 template <Scalar S>
 [[nodiscard]] Mechanism<S> nominal_mechanism(const Model& model);
 

@@ -13,7 +13,7 @@
 
 namespace hbar {
 
-/// The units a scene is written in. hbar computes in them and converts nothing.
+/// The units of a scene. hbar computes in them and converts nothing.
 enum class Units { kCentimetreGram, kMetreKilogram };
 
 /// A rigid body. Its frame sits at the centre of mass along the principal axes.
@@ -32,7 +32,7 @@ struct Body {
   }
 };
 
-/// Table II of the document, as a bit mask over a link's parameters.
+/// Table II of the source named in doc/notation.md, as a bit mask over a link's parameters.
 enum DesignMask : unsigned {
   kMaskJointTransform = 1,     ///< I
   kMaskBodyTransform = 2,      ///< II
@@ -59,7 +59,7 @@ struct Motor {
     kForce,    ///< u ∈ [−1, 1], clamped, mapped to [lower, upper]; without a range, u itself
     kPosition  ///< clamp(P (u − q) − D q̇, lower, upper)
   };
-  int link = 0;  ///< whose joint it drives
+  int link = 0;  ///< the link whose joint it drives
   Kind kind = Kind::kForce;
   double lower = -std::numeric_limits<double>::infinity();  ///< generalised force
   double upper = std::numeric_limits<double>::infinity();   ///< generalised force
@@ -79,7 +79,7 @@ struct EndEffector {
   }
 };
 
-/// A mechanism: trees of links, motors, contacts, end effectors, sensors. Immutable; made by
+/// A model: trees of links, motors, contacts, end effectors, sensors. Immutable; made by
 /// ModelBuilder.
 ///
 /// Thread-safe: every member function is const.
@@ -126,9 +126,9 @@ class Model {
     return first_control_[static_cast<std::size_t>(motor)];
   }
 
-  /// Name of coordinate i: the joint's name, and the coordinate's where there are several.
+  /// Name of coordinate i: the joint's name, and the coordinate's if there are several.
   [[nodiscard]] std::string coordinate_name(int i) const;
-  /// Name of control i: the motor's joint, and the coordinate's where there are several.
+  /// Name of control i: the motor's joint, and the coordinate's if there are several.
   [[nodiscard]] std::string control_name(int i) const;
 
   /// Index of the link, joint, body or contact of that name.
@@ -163,10 +163,10 @@ class Model {
   int tactile_count_ = 0;
 };
 
-/// Whether a contact is that of a ball's deepest point.
+/// Whether a contact acts at a ball's deepest point.
 [[nodiscard]] bool touches_as_ball(const Model& model, const Contact& contact);
 
-/// Words for units of quantities in a unit system: "m", "kg", "kg·m²", … (see parameters.h).
+/// Units of length and mass in a unit system, in words: "m", "kg", ….
 [[nodiscard]] std::string_view length_unit(Units units);
 [[nodiscard]] std::string_view mass_unit(Units units);
 

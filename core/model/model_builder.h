@@ -7,7 +7,7 @@
 
 namespace hbar {
 
-/// Makes a Model without a file.
+/// Builds a Model in code.
 ///
 /// ```cpp
 /// hbar::ModelBuilder builder("pendulum", hbar::Units::kMetreKilogram);
@@ -17,8 +17,8 @@ namespace hbar {
 /// const hbar::Model model = builder.build();
 /// ```
 ///
-/// Every call checks what it is given and throws InvalidInput that names the link, the joint or
-/// the body, the value found and what is allowed.
+/// Every call checks its arguments and throws InvalidInput that names the link, joint or body, the
+/// value found and what is allowed.
 class ModelBuilder {
  public:
   explicit ModelBuilder(std::string name, Units units = Units::kMetreKilogram);

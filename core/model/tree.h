@@ -13,8 +13,8 @@ struct CoordinateRange {
   friend bool operator==(const CoordinateRange&, const CoordinateRange&) = default;
 };
 
-/// One elementary motion of one joint. A joint of several motions is a chain of nodes whose last
-/// one carries the body; the others are massless.
+/// One elementary motion of one joint. A joint with several motions is a chain of nodes, the last
+/// of which carries the body; the others are massless.
 struct Node {
   int parent = -1;  ///< node, or −1 for the world; parent < this node
   MotionKind motion = MotionKind::kFixed;
@@ -26,7 +26,7 @@ struct Node {
 };
 
 /// The kinematic tree as the recursions see it: nodes in topological order, coordinates in file
-/// order, and who is above whom.
+/// order, and their ancestry.
 class Tree {
  public:
   /// Appends a joint's nodes below `parent_node` (−1: world). Returns its last node.

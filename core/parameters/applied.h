@@ -4,8 +4,8 @@
 
 namespace hbar {
 
-/// A mechanism, the set whose values it has, and these values: what every derivative by parameters
-/// reads. Borrows all three.
+/// A mechanism, the parameter set applied to it, and the values applied: what every derivative with
+/// respect to parameters needs. Borrows all three.
 template <Scalar S>
 struct Applied {
   const Mechanism<S>& mechanism;

@@ -25,11 +25,11 @@ template <Scalar S>
 [[nodiscard]] FrameTwists<S> frame_twists(const Model& model, const Applied<S>& applied,
                                           const Motion<S>& motion, const ParameterBlock& block);
 
-/// grad += Σ over the frame's parameters in a block of  covector · (world twist of each).
+/// grad += Σ over the frame's parameters in a block of covector · (world twist of each parameter).
 ///
 /// @param block     a joint or body transformation of the set
 /// @param covector  of displacing the frame, world, at its origin                [6]
-/// @param grad      gradient by the set's parameters                              [set.size()]
+/// @param grad      gradient with respect to the set's parameters                 [set.size()]
 template <Scalar S>
 void add_frame_gradient(const Model& model, const Applied<S>& applied, const Motion<S>& motion,
                         const ParameterBlock& block, const Vector6<S>& covector,

@@ -4,8 +4,8 @@
 
 namespace hbar {
 
-/// Classes of design parameter, in the order in which they are listed: Table II of the document by
-/// its roman numbers, then what the document does not free.
+/// Classes of design parameters, in the order in which they are listed: first those of Table II of
+/// the source named in doc/notation.md, by its Roman numerals, then hbar's own.
 enum class ParameterKind {
   kJointTransform,  ///< I: rotation vector w and translation t, X_PJ = (R̄ exp([w]), p̄ + t)
   kBodyTransform,   ///< II: the same for X_JB
@@ -34,7 +34,7 @@ struct Parameter {
   double upper = 0.0;
 };
 
-/// Scalars of one kind and owner that stand together in p.
+/// Scalars of one kind and owner that are contiguous in p.
 struct ParameterBlock {
   ParameterKind kind = ParameterKind::kJointTransform;
   int owner = 0;

@@ -9,13 +9,13 @@
 
 namespace hbar {
 
-/// Whose a parameter is: what Parameter::owner counts.
+/// What a parameter belongs to: what Parameter::owner indexes.
 enum class ParameterOwner { kLink, kMotor, kContact, kModel };
 
-/// What a parameter changes, which decides how derivatives by it are computed. Changes of contact
-/// forces come on top (contact/contact_parameters.h).
+/// What a parameter changes, which decides how derivatives with respect to it are computed. Changes
+/// of contact forces are added (contact/contact_parameters.h).
 enum class ParameterEffect {
-  kJointFrame,  ///< displaces everything from a joint's rest frame on
+  kJointFrame,  ///< displaces everything below a joint's rest frame
   kBodyFrame,   ///< displaces a body alone
   kInertia,     ///< mass and moments of a body
   kJointForce,  ///< joint forces of a link, coordinate by coordinate
@@ -24,7 +24,7 @@ enum class ParameterEffect {
   kContact  ///< contact forces alone
 };
 
-/// Values that a parameter may take; what a body cannot have is refused besides.
+/// The values that a parameter may take; physically impossible bodies are refused in addition.
 enum class ParameterRange { kAny, kNonNegative, kPositive };
 
 /// A component of a parameter block, and its value.
@@ -34,38 +34,38 @@ struct ParameterValue {
   S value = S(0.0);
 };
 
-/// How a body's mass and principal moments move with a parameter.
+/// How a body's mass and principal moments change with a parameter.
 template <Scalar S>
 struct InertiaRate {
   S mass = S(0.0);
   Vector3<S> moments = Vector3<S>::Zero();  ///<                                        [3]
 };
 
-/// What a kind does with numbers.
+/// The numerical functions of a kind.
 template <Scalar S>
 struct ParameterActions {
-  /// Sets a mechanism's numbers, those of the kinds before it being set.
+  /// Sets a mechanism's numbers; those of the kinds listed before are already set.
   void (*apply)(const Model& model, int owner, std::span<const ParameterValue<S>> values,
                 Mechanism<S>& mechanism) = nullptr;
-  /// Of kInertia, with the parameter applied.
+  /// For kInertia, with the parameter applied.
   InertiaRate<S> (*inertia_rate)(const Model& model, const Mechanism<S>& mechanism, int owner,
                                  const ParameterValue<S>& at) = nullptr;
-  /// Of kJointForce and kMotorForce: which derivative of the joint forces is by this kind.
+  /// For kJointForce and kMotorForce: which derivative of the joint forces belongs to this kind.
   VectorX<S> JointForces<S>::*force_by = nullptr;
 };
 
-/// A kind of parameter: a row of the table, and all that is known of the kind.
+/// A kind of parameter: a row of the table, with everything that is specific to the kind.
 struct ParameterKindRow {
   ParameterKind kind = ParameterKind::kJointTransform;
   std::string_view name = {};  ///< in messages and reports
   ParameterOwner owner = ParameterOwner::kLink;
-  bool with_previous = false;  ///< stands together with the row before, owner by owner
+  bool with_previous = false;  ///< listed together with the previous row, owner by owner
   unsigned mask_bit = 0;       ///< of a link's design mask that selects it; 0: none does
   ParameterEffect effect = ParameterEffect::kContact;
   ParameterRange range = ParameterRange::kAny;
   /// Appends an owner's parameters.
   void (*list)(const Model& model, int owner, std::vector<Parameter>& out) = nullptr;
-  /// The rows of g that it can touch, ascending.
+  /// The rows of g that it can affect, ascending.
   std::vector<int> (*rows)(const Model& model, int owner) = nullptr;
   ParameterActions<double> real = {};
   ParameterActions<Dual> dual = {};
@@ -88,12 +88,13 @@ struct ParameterKindRow {
 
 /// Every scalar that can be free in a model, in the order of p: kind by kind, then owner by owner
 /// (links, motors, contacts), then by component; mass and inertia, stiffness and damping, P and D
-/// stand together by owner. Contact points and scales are listed of bodies whose points a contact
-/// tests, and of those whose design mask asks for them.
+/// are listed together by owner. Contact points and scales are listed for bodies whose points a
+/// contact tests, and for those whose design mask selects them.
 [[nodiscard]] std::vector<Parameter> list_parameters(const Model& model);
 
-/// The rows of g that a block's parameters can touch, ascending: the coordinates on the path to the
-/// world, for a joint transformation also those below it, and what contacts of moved bodies couple.
+/// The rows of g that a block's parameters can affect, ascending: the coordinates on the path to
+/// the world, for a joint transformation also those below it, and those coupled by contacts of
+/// moved bodies.
 [[nodiscard]] inline std::vector<int> parameter_rows(const Model& model,
                                                      const ParameterBlock& block) {
   return row_of(block.kind).rows(model, block.owner);

@@ -7,8 +7,8 @@
 
 namespace hbar::detail {
 
-// What the table of kinds (parameter_kinds.h) lists: each function appends an owner's parameters of
-// one kind, with names, units, nominal values and bounds.
+// The `list` entries of the table of kinds (parameter_kinds.h): each function appends an owner's
+// parameters of one kind, with names, units, nominal values and bounds.
 
 using ParameterList = std::vector<Parameter>;
 

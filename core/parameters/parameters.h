@@ -9,9 +9,9 @@
 
 namespace hbar {
 
-/// Which parameters are free, and in which order they stand in the vector p: by kind, then by link
-/// (or motor) in file order, then by component. The single registry: everything that reads or
-/// writes p goes through it.
+/// Which parameters are free, and their order in the vector p: by kind, then by link (or motor) in
+/// file order, then by component. The single registry: everything that reads or writes p goes
+/// through it.
 class ParameterSet {
  public:
   /// No parameter.
@@ -22,7 +22,7 @@ class ParameterSet {
   /// Those that the links' design masks select (motor gains and gravity have no bit).
   [[nodiscard]] static ParameterSet masked(const Model& model);
   /// Those named: a full name, or a prefix that ends at a dot ("joint.knee", "body.shin.inertia").
-  /// @throws InvalidInput for a name that matches nothing, with the nearest that does
+  /// @throws InvalidInput for a name that matches nothing, suggesting the nearest that does
   [[nodiscard]] static ParameterSet named(const Model& model,
                                           const std::vector<std::string>& names);
 
@@ -54,8 +54,9 @@ class ParameterSet {
 /// Sets a mechanism's numbers to the model's own, with p in place of those in the set.
 ///
 /// @param p  values of the set's parameters                                     [set.size()]
-/// @throws InvalidInput if p has another size, is not finite, or makes a mass or a moment not
-///         positive or a triangle of moments impossible; the message names the parameter
+/// @throws InvalidInput if p has another size, is not finite, or makes a mass or moment
+///         non-positive or the moments violate the triangle inequality; the message names the
+///         parameter
 template <Scalar S>
 void apply_parameters(const Model& model, const ParameterSet& set, const VectorView<S>& p,
                       Mechanism<S>& mechanism);

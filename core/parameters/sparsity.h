@@ -10,7 +10,7 @@ namespace hbar {
 /// (branch-induced sparsity), ascending.
 [[nodiscard]] std::vector<std::vector<int>> tree_pattern(const Tree& tree);
 
-/// The same of a model's residual: besides those, the coordinates that declared contacts couple.
+/// The same for a model's residual: in addition, the coordinates coupled by declared contacts.
 [[nodiscard]] std::vector<std::vector<int>> residual_pattern(const Model& model);
 
 /// Coordinates that a contact couples: those that move either of its bodies, ascending.

@@ -13,20 +13,20 @@
 
 namespace hbar::scene {
 
-/// The pose that pos and quat of an element give.
+/// The pose given by the pos and quat of an element.
 [[nodiscard]] RigidTransform<double> pose(const Vec3& pos, const Quat& quat);
 
 /// A file's numbers as a vector.
 [[nodiscard]] Eigen::Vector3d vector(const Vec3& v);
 
-/// The surface of a mesh body, which a contact may ask for its distance.
+/// The surface of a mesh body, whose distance a contact may need.
 struct BodyMesh {
   TriangleMesh surface;        ///< in the body frame, length
   std::filesystem::path file;  ///< its OBJ file
   int cells = 0;               ///< along the longest side of its distance grid
 };
 
-/// A body of a model with what its contacts and sensors need besides.
+/// A body of a model, with what its contacts and sensors need in addition.
 struct BuiltBody {
   hbar::Body body;                    ///< with its contact points
   RigidTransform<double> X_BG = {};   ///< the frame the scene gives points of it in: the OBJ
@@ -56,13 +56,13 @@ auto with_place(const std::string& place, const Call& call) {
   }
 }
 
-/// Makes a body: its mass properties and its contact points. Opens the files it names.
+/// Builds a body: its mass properties and contact points. Opens the files it names.
 ///
-/// @param scene  the scene it is of, for its folder and its name
-/// @param body   what the scene says of it
+/// @param scene  its scene, for the folder and the file name
+/// @param body   what the scene says about it
 /// @param X_WJ   its joint's frame in the world at rest
 /// @throws IoError       if a file cannot be read
-/// @throws InvalidInput  if a mesh does not bound a solid or a file holds something else; messages
+/// @throws InvalidInput  if a mesh does not bound a solid or a file has other content; messages
 ///                       begin `file:line: <body ...>:`
 [[nodiscard]] BuiltBody build_body(const Scene& scene, const Body& body,
                                    const RigidTransform<double>& X_WJ);

@@ -7,9 +7,9 @@ namespace hbar::scene {
 
 /// Adds a scene's contacts, in file order, to a model that has its links. A contact of two cuboids
 /// becomes two contacts, the first cuboid's points first, named NAME-a and NAME-b if the scene
-/// names it. Makes the distance of each mesh that points are tested against, once.
+/// names it. Builds the distance of each mesh that points are tested against, once.
 ///
-/// @param scene    what has been read
+/// @param scene    the scene as read
 /// @param bodies   of the model's links
 /// @param builder  holds the links; takes the contacts
 /// @throws InvalidInput  if the model refuses a contact (a file of contact points was empty, names

@@ -7,16 +7,16 @@ namespace hbar::scene {
 
 /// The model of a scene that has been read: joints, bodies with their mass properties and contact
 /// points, motors, contacts, end effectors and tactile sensors. Opens the files the scene names:
-/// OBJ files, contact points, sensor points. The distance of a mesh that others touch is kept
-/// beside its OBJ file for the next time.
+/// OBJ files, contact points, sensor points. The distance grid of a mesh that others touch is
+/// cached beside its OBJ file.
 ///
-/// Robots follow each other in file order, and so do the links of each; motors, hence controls, end
-/// effectors, hence variables, contacts and sensors as the file lists them.
+/// Robots and the links of each are in file order, and so are motors (hence controls), end
+/// effectors (hence variables), contacts and sensors.
 ///
 /// @throws IoError       if a file cannot be read
-/// @throws InvalidInput  if a file holds something else than it should, a mesh does not bound a
-///                       solid, or the description was not made by a reader and the model refuses
-///                       it; messages begin `file:line: <element ...>:`
+/// @throws InvalidInput  if a file has the wrong content, a mesh does not bound a solid, or the
+///                       model refuses a description that no reader made; messages begin
+///                       `file:line: <element ...>:`
 [[nodiscard]] Model build_model(const Scene& scene);
 
 }  // namespace hbar::scene

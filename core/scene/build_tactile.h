@@ -9,12 +9,12 @@ namespace hbar::scene {
 /// rectangle run along axis1 first; a resolution of 1 puts them in the middle. Opens the files that
 /// list points.
 ///
-/// @param scene    what has been read
+/// @param scene    the scene as read
 /// @param bodies   of the model's links
 /// @param builder  holds the links; takes the sensors
 /// @throws IoError       if a file cannot be read
-/// @throws InvalidInput  if a file holds something else or no point; messages begin
-///                       `file:line: <tactile ...>:`
+/// @throws InvalidInput  if a file has other content or no point; messages begin `file:line:
+///                       <tactile ...>:`
 void add_tactile_sensors(const Scene& scene, const BuiltBodies& bodies, ModelBuilder& builder);
 
 }  // namespace hbar::scene

@@ -9,8 +9,8 @@
 
 /// What a scene file says, as plain data: no file, no mesh and no matrix is opened or computed
 /// here. Numbers are in the scene's own units. Members are named as the attributes are, and their
-/// initial values are the format's defaults (doc/scene_format.md). A description compares equal to
-/// another if every simulated or kept value is equal, whatever the layout of the files.
+/// initial values are the format's defaults (doc/scene_format.md). Descriptions compare equal if
+/// every simulated or stored value is equal, whatever the layout of the files.
 namespace hbar::scene {
 
 using Vec2 = std::array<double, 2>;

@@ -8,19 +8,19 @@
 
 namespace hbar::scene {
 
-/// The distance grid of a mesh (see DistanceGrid), kept beside the mesh's file for the next time.
-/// A kept grid that is damaged is made anew, and where none can be kept, none is.
+/// The distance grid of a mesh (see DistanceGrid), cached beside the mesh's file. A damaged cache
+/// file is replaced; if none can be written, none is.
 ///
 /// @param mesh_in_body_frame  a closed surface, length
 /// @param cells               along the longest side of its bounding box
-/// @param mesh_file           the file the mesh is from
+/// @param mesh_file           the file the mesh comes from
 /// @throws InvalidInput as DistanceGrid does
 [[nodiscard]] std::shared_ptr<const DistanceField> cached_mesh_distance(
     const TriangleMesh& mesh_in_body_frame, int cells, const std::filesystem::path& mesh_file);
 
-/// Where that grid is kept: `MESH_FILE.HASH.hbar-distance`, with 16 hexadecimal digits for all that
-/// the grid depends on. Another mesh, or another number of cells, has another file; the old one
-/// stays.
+/// Where that grid is cached: `MESH_FILE.HASH.hbar-distance`, with 16 hexadecimal digits that
+/// depend on everything the grid depends on. Another mesh or number of cells gets another file; the
+/// old one stays.
 [[nodiscard]] std::filesystem::path distance_cache_path(const TriangleMesh& mesh_in_body_frame,
                                                         int cells,
                                                         const std::filesystem::path& mesh_file);

@@ -11,7 +11,7 @@ namespace hbar::scene {
 /// A scene file's model.
 struct LoadedModel {
   Model model;
-  std::vector<std::string> notices;  ///< what the person should know, each `file:line: ...`
+  std::vector<std::string> notices;  ///< what the user should know, each `file:line: ...`
 };
 
 /// read_scene and build_model in one.

@@ -5,24 +5,24 @@
 
 namespace hbar::scene {
 
-/// An inertia brought to its principal axes.
+/// An inertia in its principal axes.
 struct PrincipalAxes {
   Eigen::Vector3d moments;  ///< ascending                                             [3]
   Eigen::Matrix3d axes;     ///< columns: right-handed, of unit length, in the old axes  [3 x 3]
 };
 
 /// Principal axes of a symmetric inertia, ascending moments first. The largest entry of each of the
-/// first two axes is positive, the third axis completes a right-handed frame.
+/// first two axes is positive; the third axis completes a right-handed frame.
 ///
 /// @param inertia  symmetric, mass·length²  [3 x 3]
 [[nodiscard]] PrincipalAxes principal_axes(const Eigen::Matrix3d& inertia);
 
-/// The matrix of the six numbers xx xy xz yy yz zz.  [3 x 3]
+/// The symmetric matrix of the six numbers xx xy xz yy yz zz.  [3 x 3]
 ///
 /// @throws InvalidInput if there are not six
 [[nodiscard]] Eigen::Matrix3d symmetric_matrix(const std::vector<double>& entries);
 
-/// Whether moments can be those of a body: positive, none above the sum of the others.
+/// Whether moments can belong to a body: positive, none above the sum of the other two.
 [[nodiscard]] bool are_physical_moments(const Eigen::Vector3d& moments);
 
 }  // namespace hbar::scene

@@ -3,10 +3,10 @@
 #include "hbar/core/scene/description.h"
 #include "hbar/core/scene/xml_element.h"
 
-/// The parts read_xml.cpp is made of. All of them throw InvalidInput as XmlElement does.
+/// The parts of read_xml.cpp. All of them throw InvalidInput as XmlElement does.
 namespace hbar::scene {
 
-/// Remembers the attributes of the elements in a `<default>` block, having checked their texts.
+/// Checks and stores the attributes of the elements in a `<default>` block.
 void read_defaults(const tinyxml2::XMLElement& block, ReadContext& context);
 
 /// A link's parts, and a robot with all its links.
@@ -35,7 +35,7 @@ void read_defaults(const tinyxml2::XMLElement& block, ReadContext& context);
 /// `<virtual>`'s `<sphere>` or `<cuboid>`.
 [[nodiscard]] VirtualShape read_virtual_shape(const XmlElement& element);
 
-/// Checks that names differ and references lead somewhere.
+/// Checks that names are unique and references resolve.
 ///
 /// @throws InvalidInput for the first that do not
 void check_references(const Description& description, const ReadContext& context);

@@ -16,8 +16,7 @@ namespace hbar::scene {
 ///
 /// @throws IoError       if the file cannot be read
 /// @throws InvalidInput  that begins `file:line:` for anything else: a number that is not finite,
-/// an
-///                       index out of range, a polygon that repeats a corner, no face at all
+///                       an index out of range, a polygon that repeats a corner, no face at all
 [[nodiscard]] TriangleMesh read_obj(const std::filesystem::path& path);
 
 /// The same from the text of a file that messages call `name`.

@@ -12,12 +12,12 @@ namespace hbar::scene {
 /// A scene file that has been read.
 struct Scene {
   Description description;           ///< what it says, defaults applied
-  std::vector<std::string> notices;  ///< what the person should know, each `file:line: ...`
+  std::vector<std::string> notices;  ///< what the user should know, each `file:line: ...`
   std::string file;                  ///< its name, as messages spell it
   std::filesystem::path folder;      ///< where the files it names are looked for
 };
 
-/// Reads a scene file; doc/scene_format.md says what it may hold. Files it names are not opened.
+/// Reads a scene file in the format of doc/scene_format.md. Files it names are not opened.
 ///
 /// @throws IoError       if the file cannot be read
 /// @throws InvalidInput  for everything the format does not allow; the message begins
@@ -26,8 +26,8 @@ struct Scene {
 
 /// The same from the text of a file.
 ///
-/// @param text    what the file would hold
-/// @param name    what messages call it
+/// @param text    the content of the file
+/// @param name    the file's name in messages
 /// @param folder  where the files it names are looked for
 [[nodiscard]] Scene read_scene_text(std::string_view text, const std::string& name,
                                     const std::filesystem::path& folder = ".");

@@ -6,14 +6,14 @@
 #include <vector>
 
 /// Every element and attribute of the scene format, once: the reader validates against this table,
-/// the writer takes its spellings from it, and the reference in doc/scene_format.md is printed from
-/// it.
+/// the writer takes its spellings from it, and the reference in doc/scene_format.md is generated
+/// from it.
 namespace hbar::scene {
 
-/// What an attribute's text is.
+/// The type of an attribute's text.
 enum class Kind { kText, kChoice, kFlag, kInteger, kNumber, kIgnored };
 
-/// What its numbers must satisfy.
+/// The condition on its numbers.
 enum class Range {
   kAny,
   kPositive,     ///< each > 0
@@ -31,7 +31,7 @@ struct AttributeInfo {
   std::string_view name;
   Kind kind = Kind::kNumber;
   int count = 1;                   ///< numbers in it; 0: one per joint coordinate
-  int other_count = 0;             ///< another number of numbers it may have; 0: none
+  int other_count = 0;             ///< alternative count; 0: none
   const char* fallback = nullptr;  ///< the default, as a file would write it; null: none
   bool required = false;
   Range range = Range::kAny;
@@ -45,7 +45,7 @@ struct AttributeInfo {
 /// One element.
 struct ElementInfo {
   std::string_view name;
-  std::string_view parents;  ///< elements it may stand in, separated by '|'; empty: the root
+  std::string_view parents;  ///< elements that may contain it, separated by '|'; empty: the root
   bool single = false;       ///< at most one in each parent
   std::string_view sentence = {};
   std::span<const AttributeInfo> attributes = {};
@@ -69,13 +69,13 @@ struct ElementInfo {
 /// The parts of a text separated by `separator`.
 [[nodiscard]] std::vector<std::string> listed(std::string_view alternatives, char separator);
 
-/// Names of the elements that may stand in a parent; of those that `<default>` may hold, too.
+/// Names of the elements that a parent, `<default>` included, may contain.
 [[nodiscard]] std::vector<std::string> children_of(std::string_view parent);
 
 /// Names of an element's attributes, each once.
 [[nodiscard]] std::vector<std::string> attribute_names(const ElementInfo& element);
 
-/// What an attribute takes, as messages end: "size takes 3 numbers > 0".
+/// What an attribute takes, for the end of messages: "size takes 3 numbers > 0".
 [[nodiscard]] std::string what_it_takes(const AttributeInfo& attribute);
 
 /// The spelling of choice `index` of an attribute.

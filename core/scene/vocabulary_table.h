@@ -6,7 +6,7 @@
 
 namespace hbar::scene {
 
-/// The attribute tables of the larger elements, kept apart for length.
+/// The attribute tables of the larger elements, in their own file for length.
 [[nodiscard]] std::span<const AttributeInfo> joint_attributes();
 [[nodiscard]] std::span<const AttributeInfo> body_attributes();
 

@@ -16,9 +16,8 @@ namespace hbar::scene {
 /// @param file      its name for messages
 /// @param document  receives the parsed document
 /// @returns         the root
-/// @throws InvalidInput that begins `file:line:` if it is not well formed, not UTF-8 text, empty,
-/// or
-///         has another or a second root
+/// @throws InvalidInput that begins `file:line:` if it is not well formed, is not UTF-8 text, is
+///         empty, or has another or a second root
 const tinyxml2::XMLElement& parse_document(std::string_view text, const std::string& file,
                                            tinyxml2::XMLDocument& document);
 

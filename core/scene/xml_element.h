@@ -24,23 +24,23 @@ struct AttributeText {
   bool from_default = false;  ///< from a `<default>` block, not from the element itself
 };
 
-/// What reading one file needs everywhere.
+/// The context of reading one file.
 struct ReadContext {
   std::string file;                  ///< as messages name it
-  std::vector<std::string> notices;  ///< what the person should know, in file order
+  std::vector<std::string> notices;  ///< what the user should know, in file order
   /// Attributes of `<default>` blocks, by element and attribute.
   std::map<std::string, std::map<std::string, AttributeText, std::less<>>, std::less<>> defaults;
 
-  std::set<std::string, std::less<>> noticed = {};  ///< their texts, without where
+  std::set<std::string, std::less<>> noticed = {};  ///< their texts, without location
 
-  /// Adds `file:line: text` to the notices, unless the same text is there for another line.
+  /// Adds `file:line: text` to the notices, unless the same text is already there for another line.
   void notice(int line, std::string_view text);
 };
 
 /// One element of a file, read by the vocabulary: every reading function finds the attribute's row,
 /// takes the text from the element, from a `<default>` block or from the row's own default, checks
-/// it and throws an InvalidInput that begins `file:line: <element attribute="text">:` if it is not
-/// what the row says.
+/// it and throws an InvalidInput that begins `file:line: <element attribute="text">:` if it
+/// violates the row.
 class XmlElement {
  public:
   /// @param xml      the element; must outlive this
@@ -53,8 +53,8 @@ class XmlElement {
   [[nodiscard]] const tinyxml2::XMLElement& xml() const { return *xml_; }
   [[nodiscard]] ReadContext& context() const { return *context_; }
 
-  /// Reads the choice that decides which attributes apply; of those that do not, the ones that
-  /// stand in the element itself are noticed and not read.
+  /// Reads the choice that decides which attributes apply; attributes of the element itself that do
+  /// not apply are reported in a notice and ignored.
   std::size_t read_type(std::string_view attribute);
 
   /// Whether the element or a default block gives the attribute.
@@ -71,7 +71,7 @@ class XmlElement {
   [[nodiscard]] int integer(std::string_view attribute) const;
   [[nodiscard]] double number(std::string_view attribute) const;
   [[nodiscard]] std::optional<double> optional_number(std::string_view attribute) const;
-  /// Numbers of any count; `count` of them, if that is not 0 (the row's own count, otherwise).
+  /// Numbers: `count` of them, or the row's own count if that is 0.
   [[nodiscard]] std::vector<double> list(std::string_view attribute, std::size_t count = 0) const;
   /// Numbers of the row's fixed count, which is N.
   template <std::size_t N>
@@ -93,8 +93,8 @@ class XmlElement {
   /// A quaternion of unit length.
   [[nodiscard]] std::array<double, 4> quaternion(std::string_view attribute) const;
 
-  /// Checks the text of an attribute the element states against each type it may belong to; one
-  /// must take it.
+  /// Checks the text of an attribute given by the element against each type it may belong to; one
+  /// must accept it.
   void check_any_type(std::string_view attribute) const;
 
   /// Whether the attribute has a row for the element's type.
@@ -132,8 +132,8 @@ class XmlElement {
   int line_ = 0;
 };
 
-/// The child elements of an element, in file order, each known, in its place and not too often;
-/// text between them is noticed and dropped.
+/// The child elements of an element, in file order, each checked to be known, allowed there and not
+/// repeated too often; text between them is reported in a notice and dropped.
 [[nodiscard]] std::vector<const tinyxml2::XMLElement*> checked_children(
     const tinyxml2::XMLElement& parent, ReadContext& context);
 

@@ -7,7 +7,7 @@
 
 namespace hbar::solvers {
 
-/// Bytes that the factors of a band may take: 8 GiB. A wider band is no band: it is refused.
+/// Bytes that the factors of a band may take: 8 GiB. Wider bands are refused.
 inline constexpr double kMaxBandBytes = 8.0 * 1024.0 * 1024.0 * 1024.0;
 
 /// How far from the diagonal a matrix has entries.
@@ -34,8 +34,8 @@ struct Band {
 }
 
 /// @param solver  its name
-/// @param bytes   that the factors would take
-/// @throws InvalidInput if these are more than kMaxBandBytes
+/// @param bytes   bytes that the factors would take
+/// @throws InvalidInput if there are more than kMaxBandBytes
 inline void refuse_wide_band(const std::string& solver, const SparseMatrix& A, double bytes) {
   if (bytes <= kMaxBandBytes) {
     return;

@@ -7,9 +7,10 @@
 namespace hbar::solvers {
 
 /// Dense LU of a block-banded matrix, a block column at a time: partial pivoting among all rows of
-/// the block column from its diagonal block down, so that every regular matrix is safe, and the
-/// upper band grows by the lower one. The band follows the outline of the matrix, blocks may differ
-/// in size, and blocks of zeros above the diagonal cost storage but no work.
+/// the block column from its diagonal block down, so that every regular matrix can be factorised,
+/// and the upper band grows by the width of the lower one. The band follows the outline of the
+/// matrix, blocks may differ in size, and blocks of zeros above the diagonal cost storage but no
+/// work.
 ///
 /// @param options  block_sizes: rows of each diagonal block, or none for blocks of one size that
 ///                 suits the bandwidth  [blocks]

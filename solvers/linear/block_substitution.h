@@ -27,13 +27,13 @@ class BlockSubstitution final : public LinearSolver {
   [[nodiscard]] FactorInfo factor_info() const override;
   [[nodiscard]] int block_count() const { return static_cast<int>(factors_.size()); }
 
-  /// Hands in factors of a diagonal block that the caller has already; the next factorize() takes
-  /// them instead of factorising that block. Factors of a nearby matrix are caught by the
-  /// residual: refined where one step is enough, refused otherwise.
+  /// Passes in factors of a diagonal block that the caller already has; the next factorize() uses
+  /// them instead of factorising that block. Factors of a nearby matrix are detected by the
+  /// residual: refined if one step is enough, refused otherwise.
   ///
   /// @param block    index, from 0
   /// @param factors  of diagonal block `block`  [its size x its size]
-  /// @throws InvalidInput if there is no such block or the size is another
+  /// @throws InvalidInput if there is no such block or the size differs
   void adopt_factors(int block, const BlockFactors& factors);
 
  private:
@@ -55,8 +55,8 @@ class BlockSubstitution final : public LinearSolver {
     return begin_[static_cast<std::size_t>(block) + 1] - block_begin(block);
   }
 
-  /// Entries of a block column as a dense matrix: where all of its columns have the same rows,
-  /// without a gap.
+  /// Entries of a block column as a dense matrix, if all of its columns have the same rows without
+  /// a gap.
   struct Panel {
     int first_row = 0;
     int rows = 0;  // 0: no such panel

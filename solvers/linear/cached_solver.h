@@ -6,10 +6,11 @@
 
 namespace hbar::solvers {
 
-/// Block substitution where the matrix is block triangular, KLU otherwise: needs no optional part.
+/// Block substitution if the matrix is block triangular, KLU otherwise; needs no optional
+/// component.
 [[nodiscard]] SolverFactory default_solver();
 
-/// What a solver has to know of a matrix besides its pattern.
+/// What a solver needs to know about a matrix besides its pattern.
 struct MatrixDescription {
   SolverOptions options;
   std::function<std::string(int)> names;  ///< of the unknowns, for messages
@@ -23,14 +24,13 @@ class CachedSolver {
 
   /// Factorises A.
   ///
-  /// @param pattern   the caller's count of patterns so far, > 0: the same number means the same
-  ///                  pattern
-  /// @param describe  asked only when the pattern is another one
+  /// @param pattern   the caller's count of patterns so far, > 0; equal numbers mean equal patterns
+  /// @param describe  called only when the pattern has changed
   /// @throws what LinearSolver::analyze and factorize throw
   LinearSolver& factorize(const SparseMatrix& A, int pattern,
                           const std::function<MatrixDescription()>& describe);
 
-  /// The last matrix's; there is none before the first factorize().
+  /// The solver of the last matrix; there is none before the first factorize().
   [[nodiscard]] LinearSolver& solver() { return *solver_; }
   [[nodiscard]] const LinearSolver& solver() const { return *solver_; }
 

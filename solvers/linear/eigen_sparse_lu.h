@@ -6,7 +6,7 @@
 
 namespace hbar::solvers {
 
-/// Eigen's supernodal sparse LU (MPL; after SuperLU), with partial pivoting and no library but
+/// Eigen's supernodal sparse LU (MPL; after SuperLU), with partial pivoting; needs no library but
 /// Eigen.
 ///
 /// Orderings: natural, amd, colamd (the default).

@@ -6,9 +6,9 @@
 
 namespace hbar::solvers {
 
-/// SuiteSparse KLU (LGPL): sparse LU by block triangular form, without BLAS, the same bits on every
-/// machine. A second factorize() keeps the pivot order of the first as long as the pivots stay
-/// sound, and chooses a new one otherwise.
+/// SuiteSparse KLU (LGPL): sparse LU by block triangular form, without BLAS; bitwise reproducible
+/// on every machine. A second factorize() keeps the pivot order of the first while the pivots stay
+/// acceptable, and chooses a new one otherwise.
 ///
 /// @param options  orderings: amd (the default) and colamd of the blocks of the block triangular
 ///                 form, natural without that form; 32- or 64-bit indices

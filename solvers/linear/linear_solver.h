@@ -18,7 +18,7 @@ namespace hbar::solvers {
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 /// One or several right-hand sides, a column each; a vector is a matrix of one column.
 using MatrixView = Eigen::Ref<const Eigen::MatrixXd>;
-/// Like MatrixView, written to.
+/// Like MatrixView, but writable.
 using MatrixSpan = Eigen::Ref<Eigen::MatrixXd>;
 
 /// Which system is solved.
@@ -44,12 +44,12 @@ struct Inertia {
   friend bool operator==(const Inertia&, const Inertia&) = default;
 };
 
-/// What the last factorisation came to.
+/// Figures of the last factorisation.
 struct FactorInfo {
   double entries = 0.0;         ///< numbers that the factors hold, stored zeros included
-  double bytes = 0.0;           ///< of factors, analysis and workspace, about
+  double bytes = 0.0;           ///< of factors, analysis and workspace, approximate
   std::optional<double> flops;  ///< operations of the factorisation, where the solver counts them
-  std::optional<Inertia> inertia;  ///< where the factorisation shows it
+  std::optional<Inertia> inertia;  ///< if the factorisation reveals it
 };
 
 /// A solver could not get the memory it asked for; the message says which solver and what to try.
@@ -72,12 +72,13 @@ struct SolverStatistics {
   double worst_residual = 0.0;  ///< largest scaled residual that was accepted
 };
 
-/// Solves A X = B and Aᵀ X = B for a sparse square A: analyse a pattern once, factorise its values
-/// as often as they change, solve as often as wanted.
+/// Solves A X = B and Aᵀ X = B for a sparse square A: analyse a pattern once, factorise whenever
+/// its values change, solve any number of times.
 ///
-/// No solution leaves unchecked: every right-hand side's residual is computed with the matrix as
-/// given, refined where that helps, and refused if it is too large. An object holds its
-/// workspace and belongs to one thread at a time; different objects are independent.
+/// Every solution is checked: the residual of each right-hand side is computed with the matrix as
+/// given; the solution is refined where that helps, and refused if the residual stays too large. An
+/// object holds its workspace and belongs to one thread at a time; different objects are
+/// independent.
 class LinearSolver {
  public:
   LinearSolver() = default;
@@ -85,20 +86,21 @@ class LinearSolver {
   LinearSolver& operator=(const LinearSolver&) = delete;
   virtual ~LinearSolver() = default;
 
-  /// Name as the factory's, for messages: "block_substitution", "klu", "umfpack".
+  /// The name that solver_factory knows, for messages: "block_substitution", "klu", "umfpack".
   [[nodiscard]] virtual std::string name() const = 0;
-  /// What the last factorisation came to; meaningless before one.
+  /// Figures of the last factorisation; meaningless before the first.
   [[nodiscard]] virtual FactorInfo factor_info() const = 0;
 
-  /// Says what a row (and the column of the same index) stands for; messages then name it.
+  /// Sets what a row (and the column of the same index) stands for; messages then name it.
   ///
   /// @param name_of  from an index, 0 ≤ index < n, to "stage 3, coordinate elbow" or the like
   void name_unknowns(std::function<std::string(int)> name_of) { name_of_ = std::move(name_of); }
 
-  /// Studies the pattern of A; its values are not read.
+  /// Analyses the pattern of A; its values are not read.
   ///
   /// @param A  square, compressed, row indices ascending  [n x n]
-  /// @throws InvalidInput if A is not that, or has no symmetric pattern where the solver needs one
+  /// @throws InvalidInput if A is not such a matrix, or its pattern is not symmetric although the
+  ///         solver needs that
   /// @throws NumericalFailure naming a row or column without entries
   /// @throws OutOfMemory
   void analyze(const SparseMatrix& A);
@@ -106,10 +108,10 @@ class LinearSolver {
   /// Factorises the values of A, and keeps a copy of them for the residual.
   ///
   /// @param A  of the pattern last analysed  [n x n]
-  /// @throws InvalidInput if the pattern is another one, or none was analysed
-  /// @throws NumericalFailure if an entry is not finite, or A is singular to working precision
-  ///   (a pivot below 1e-14 of its column, rows scaled to 1): the message names row and column, and
-  ///   what they stand for; or if a symmetric solver finds A not to be what it is for
+  /// @throws InvalidInput if the pattern differs, or none was analysed
+  /// @throws NumericalFailure if an entry is not finite, or A is singular to working precision (a
+  ///   pivot below 1e-14 of its column, rows scaled to 1): the message names row and column, and
+  ///   what they stand for; or if a symmetric solver finds that A is not of its kind
   /// @throws OutOfMemory
   void factorize(const SparseMatrix& A);
 
@@ -141,19 +143,20 @@ class LinearSolver {
   void set_residual_bounds(const ResidualBounds& bounds);
 
  protected:
-  /// Whether only matrices of symmetric pattern are taken; then their values are taken as
-  /// symmetric, too, and one triangle may be read alone.
+  /// Whether only matrices of symmetric pattern are accepted; their values are then assumed
+  /// symmetric too, and only one triangle may be read.
   [[nodiscard]] virtual bool needs_symmetry() const { return false; }
   /// Analyses matrix().
   virtual void do_analyze() = 0;
-  /// Factorises matrix(), whose values are finite. Calls refuse_small_pivots or its like.
+  /// Factorises matrix(), whose values are finite. Reports a singular matrix by find_small_pivot
+  /// and throw_singular, or in another way.
   virtual void do_factorize() = 0;
   /// Overwrites right-hand sides by solutions.
   ///
   /// @param X  finite; columns contiguous  [n x r]
   virtual void do_solve(System system, MatrixSpan X) = 0;
-  /// The same, and leaves the residuals B − A X (or B − Aᵀ X), for solvers that come by them while
-  /// they solve; others return false and leave X as it is.
+  /// The same, and leaves the residuals B − A X (or B − Aᵀ X), for solvers that obtain them while
+  /// solving; others return false and leave X unchanged.
   ///
   /// @param X  as in do_solve  [n x r]
   /// @param R  residuals, resized  [n x r]
@@ -164,10 +167,10 @@ class LinearSolver {
 
   /// The matrix last analysed, with the values last factorised  [n x n]
   [[nodiscard]] const SparseMatrix& matrix() const { return matrix_; }
-  /// Largest magnitude of each row of matrix(): what the rows are divided by for the pivots  [n]
+  /// Largest magnitude of each row of matrix(), by which rows are divided when judging pivots  [n]
   [[nodiscard]] const Eigen::VectorXd& row_scale() const { return row_scale_; }
 
-  /// The first pivot that is too small against its column of the row-scaled matrix; -1: none.
+  /// The first pivot that is too small relative to its column of the row-scaled matrix; -1: none.
   ///
   /// @param pivots   of the row-scaled matrix               [n]
   /// @param columns  column of A of each pivot, from 0      [n]
@@ -192,7 +195,7 @@ class LinearSolver {
 
   void count_refactorization() { ++statistics_.refactorizations; }
 
-  /// A pivot this small against its column makes a matrix singular to working precision.
+  /// A pivot this small relative to its column makes a matrix singular to working precision.
   static constexpr double kPivotFloor = 1e-14;
 
  private:

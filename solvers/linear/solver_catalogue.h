@@ -12,15 +12,15 @@ namespace hbar::solvers {
 /// Makes a solver of one kind.
 using MakeSolver = std::unique_ptr<LinearSolver> (*)(const SolverOptions&);
 
-/// One solver and what it is meant for.
+/// One solver and its uses.
 struct SolverEntry {
   std::string name;                   ///< "klu", "cholmod_ldlt", …
   std::string sentence;               ///< what it is, for help texts
   std::string licence;                ///< of the library behind it
-  std::string component;              ///< of hbar that it is in: "solvers", "umfpack" or "suite"
-  std::string package;                ///< of Debian that hbar's build needs for it; empty: none
-  std::vector<Structure> structures;  ///< that it is for
-  std::vector<Ordering> orderings;    ///< that it offers, kDefault among them
+  std::string component;              ///< part of hbar: "solvers", "umfpack" or "suite"
+  std::string package;                ///< Debian package that building it needs; empty: none
+  std::vector<Structure> structures;  ///< those it is meant for
+  std::vector<Ordering> orderings;    ///< those it offers, including kDefault
   bool has_64_bit_indices = false;
   MakeSolver make = nullptr;  ///< nullptr: its component is not in this program
 
@@ -28,15 +28,15 @@ struct SolverEntry {
   [[nodiscard]] bool offers(Ordering ordering) const;
 };
 
-/// Every solver that this program has: block_substitution and klu, and those of the components
+/// Every solver available in this program: block_substitution and klu, and those of the components
 /// whose headers it includes (hbar/umfpack.h, hbar/suite.h).
 [[nodiscard]] std::vector<SolverEntry> available_solvers();
 
-/// @throws InvalidInput for a name that no solver has, with the names that there are; for a solver
-///         that is not in this program, with its component and package
+/// @throws InvalidInput for an unknown name, listing the known ones; for a solver that is not in
+///         this program, naming its component and package
 [[nodiscard]] const SolverEntry& find_solver(std::string_view name);
 
-/// Adds a solver of a component to the program; to be called before threads ask for solvers. The
+/// Adds a component's solver to the program; call it before threads request solvers. The
 /// components' headers do so.
 ///
 /// @returns true

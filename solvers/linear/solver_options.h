@@ -10,7 +10,7 @@
 
 namespace hbar::solvers {
 
-/// What is known of a matrix beforehand. It decides which solvers are meant for it.
+/// What is known about a matrix in advance. It decides which solvers suit it.
 enum class Structure {
   kGeneral,          ///< square, nothing more is known
   kBlockTriangular,  ///< block lower triangular: H̄ of a trajectory
@@ -19,13 +19,13 @@ enum class Structure {
   kQuasiDefinite,    ///< symmetric, [[P, Bᵀ], [B, −Q]] with definite P and Q, rows in any order
 };
 
-/// In which order unknowns are eliminated.
+/// The order in which unknowns are eliminated.
 enum class Ordering {
-  kDefault,  ///< the one the solver itself would take
+  kDefault,  ///< the solver's own default
   kNatural,  ///< as given; the matrices of trajectories come in time order
   kAmd,      ///< approximate minimum degree of A or A + Aᵀ
   kColamd,   ///< approximate minimum degree of AᵀA
-  kMetis,    ///< METIS' nested dissection
+  kMetis,    ///< METIS's nested dissection
   kNested,   ///< CHOLMOD's nested dissection, with constrained minimum degree at its leaves
 };
 
@@ -35,7 +35,7 @@ enum class IndexWidth {
   k64   ///< more memory per entry, any size
 };
 
-/// How a solver is to be made.
+/// How to make a solver.
 struct SolverOptions {
   Ordering ordering = Ordering::kDefault;
   IndexWidth index_width = IndexWidth::k32;
@@ -44,7 +44,7 @@ struct SolverOptions {
   std::vector<int> block_sizes = {};
 };
 
-/// Makes a solver for a matrix of a pattern, which is what an automatic choice looks at.
+/// Makes a solver for matrices with the pattern of A, which an automatic choice examines.
 using SolverFactory =
     std::function<std::unique_ptr<LinearSolver>(const SolverOptions&, const SparseMatrix& A)>;
 
@@ -52,12 +52,12 @@ using SolverFactory =
 [[nodiscard]] std::string_view name_of(Structure structure);
 /// Name of an ordering: "default", "natural", "amd", "colamd", "metis", "nested".
 [[nodiscard]] std::string_view name_of(Ordering ordering);
-/// @throws InvalidInput naming the orderings there are
+/// @throws InvalidInput listing the known orderings
 [[nodiscard]] Ordering find_ordering(std::string_view name);
 
 /// @param solver   its name
-/// @param offered  the orderings that it has, kDefault among them
-/// @throws InvalidInput naming the offered orderings if `ordering` is not among them
+/// @param offered  the orderings that it offers, including kDefault
+/// @throws InvalidInput listing the offered orderings if `ordering` is not among them
 void refuse_other_orderings(std::string_view solver, Ordering ordering,
                             std::initializer_list<Ordering> offered);
 

@@ -2,9 +2,9 @@
 
 namespace hbar::solvers {
 
-/// Adds the suite's solvers to those that are found by their names: block_banded, eigen_sparse_lu,
-/// and what was there when hbar::suite was built of umfpack, the solvers of CHOLMOD, spqr, mumps
-/// and lapack_band. Including "hbar/suite.h" calls it.
+/// Adds the suite's solvers to those found by name: block_banded, eigen_sparse_lu, and those of
+/// umfpack, the solvers of CHOLMOD, spqr, mumps and lapack_band that were available when
+/// hbar::suite was built. Including "hbar/suite.h" calls it.
 ///
 /// @returns true
 bool register_suite();

@@ -6,8 +6,8 @@
 
 namespace hbar::solvers {
 
-/// Some neighbouring entries of one column of a sparse matrix: rows ascend. Rows without a gap, as
-/// in matrices of dense blocks, are treated as the dense vector they are.
+/// Some consecutive entries of one column of a sparse matrix, rows ascending. Rows without a gap,
+/// as in matrices of dense blocks, are treated as a dense vector.
 struct SparseColumn {
   const int* rows = nullptr;       ///< row of each entry  [count]
   const double* values = nullptr;  ///< its value          [count]
@@ -45,7 +45,7 @@ struct SparseColumn {
 
   /// Raises `largest` and `sum` of the column's rows by the magnitudes of its entries.
   ///
-  /// @param largest, sum  begins of dense vectors with all the column's rows
+  /// @param largest, sum  beginnings of dense vectors with all the column's rows
   /// @returns  sum of all magnitudes; not finite if an entry is not
   double measure(double* largest, double* sum) const {
     if (has_no_gap()) {

@@ -8,19 +8,20 @@
 
 #include "hbar/solvers/linear/solver_options.h"
 
-// What the solvers of SuiteSparse share. Its own headers stay in their .cpp.
+// Shared code of the SuiteSparse solvers. SuiteSparse's headers are included only in their .cpp
+// files.
 namespace hbar::solvers::suitesparse {
 
 /// SuiteSparse's wide index: SuiteSparse_long in version 5, int64_t from 7 on.
 using WideIndex = std::int64_t;
 
-/// The column starts and row indices of a matrix in the width that a library wants: the matrix's
+/// The column starts and row indices of a matrix in the width that a library expects: the matrix's
 /// own arrays for `int`, a copy for WideIndex. SuiteSparse takes them as pointers to non-const and
 /// does not write to them.
 template <typename Index>
 class IndexArrays {
  public:
-  /// @param A  compressed; its own arrays have to stay where they are
+  /// @param A  compressed; its arrays must stay in place
   void assign(const SparseMatrix& A) {
     const int* columns = A.outerIndexPtr();
     const int* rows = A.innerIndexPtr();
@@ -47,7 +48,7 @@ class IndexArrays {
   std::vector<Index> kept_rows_;
 };
 
-/// A permutation as the base class wants it.
+/// A permutation as the base class expects it.
 ///
 /// @param permutation  in the library's width  [n]
 /// @param narrow       the same, as int        [n]
@@ -57,8 +58,8 @@ void narrow_indices(const Index* permutation, std::vector<int>& narrow) {
                  [](Index index) { return static_cast<int>(index); });
 }
 
-/// Held during an analysis that may call METIS, which seeds the process's one random generator and
-/// draws from it: two analyses at once would get orderings that depend on their timing.
+/// A lock held during an analysis that may call METIS, which seeds the process-wide random
+/// generator and draws from it: orderings of concurrent analyses would depend on timing.
 [[nodiscard]] inline std::unique_lock<std::mutex> lock_metis(Ordering ordering) {
   static std::mutex mutex;
   const bool draws = ordering == Ordering::kMetis || ordering == Ordering::kNested;

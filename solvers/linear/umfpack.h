@@ -7,15 +7,15 @@
 namespace hbar::solvers {
 
 /// SuiteSparse UMFPACK (GPL; target hbar::umfpack): multifrontal sparse LU for general matrices.
-/// Its own iterative refinement is off: LinearSolver refines where that is needed.
+/// Its own iterative refinement is off: LinearSolver refines where needed.
 ///
 /// @param options  orderings: by default UMFPACK chooses between amd, which also prefers pivots on
-///                 the diagonal, and colamd; further natural and metis. Rows and columns that need
-///                 no elimination come first in any case. 32- or 64-bit indices
+///                 the diagonal, and colamd; also natural and metis. Rows and columns that need no
+///                 elimination always come first. 32- or 64-bit indices
 /// @throws InvalidInput for another ordering
 [[nodiscard]] std::unique_ptr<LinearSolver> make_umfpack(const SolverOptions& options = {});
 
-/// Adds it to the solvers that are found by their names. Including "hbar/umfpack.h" calls this.
+/// Adds it to the solvers found by name. Including "hbar/umfpack.h" calls this.
 ///
 /// @returns true
 bool register_umfpack();

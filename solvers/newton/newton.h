@@ -6,7 +6,7 @@
 
 namespace hbar::solvers {
 
-/// A nonlinear system g(x) = 0 as Newton's method sees it.
+/// A nonlinear system g(x) = 0, as Newton's method uses it.
 class NewtonSystem {
  public:
   NewtonSystem() = default;
@@ -14,7 +14,7 @@ class NewtonSystem {
   NewtonSystem& operator=(const NewtonSystem&) = delete;
   virtual ~NewtonSystem() = default;
 
-  /// g(x); entries that are not finite make the step shorter.
+  /// g(x); entries that are not finite shorten the step.
   virtual void residual(const Eigen::VectorXd& x, Eigen::VectorXd& g) = 0;
   /// g(x) and factors of its Jacobian there, which solve() then uses.
   virtual void factorize(const Eigen::VectorXd& x, Eigen::VectorXd& g) = 0;
@@ -25,7 +25,7 @@ class NewtonSystem {
 /// When Newton's method stops. Corrections are measured as max_i |dx_i| / (1 + |x_i|).
 struct NewtonOptions {
   double tol = 1e-9;    ///< on ‖g‖₂, unit of g
-  double rtol = 1e-12;  ///< on the correction that would come next, relative
+  double rtol = 1e-12;  ///< on the next correction, relative
   int max_iter = 100;   ///< corrections
   int max_ls = 20;      ///< shortenings of one correction
 };
@@ -33,10 +33,10 @@ struct NewtonOptions {
 /// Why Newton's method stopped.
 enum class NewtonStatus {
   kConverged,       ///< ‖g‖₂ ≤ tol and the next correction ≤ rtol
-  kRounding,        ///< converged as far as rounding lets it: corrections ceased to shrink
+  kRounding,        ///< converged as far as rounding allows: corrections no longer shrink
   kIterationLimit,  ///< max_iter corrections did not suffice
   kLineSearch,      ///< no acceptable step after max_ls shortenings
-  kSingular,        ///< the Jacobian could not be solved with
+  kSingular,        ///< the Jacobian is singular
   kNotFinite,       ///< g is not finite at the start
   kStrayed          ///< converged, but the caller found the solution implausible
 };
@@ -44,12 +44,12 @@ enum class NewtonStatus {
 /// Why Newton's method stopped, in words.
 [[nodiscard]] std::string_view describe(NewtonStatus status);
 
-/// What a solve did.
+/// A report on one solve.
 struct NewtonReport {
   NewtonStatus status = NewtonStatus::kNotFinite;
   int iterations = 0;      ///< corrections applied
   int factorizations = 0;  ///< Jacobians evaluated
-  double residual = 0.0;  ///< ‖g‖₂ where it was last evaluated (a last correction may follow)
+  double residual = 0.0;  ///< ‖g‖₂ where it was last evaluated (one more correction may follow)
   double correction = 0.0;  ///< last correction, relative
   int worst = 0;            ///< index of the largest entry of the last correction
 
@@ -60,7 +60,7 @@ struct NewtonReport {
 
 /// Damped Newton with the natural monotonicity test: a step λ dx is accepted if the simplified
 /// correction J⁻¹ g(x + λ dx) is shorter than dx. Invariant under scaling of the residual, so that
-/// torques and forces may be mixed; reuses a Jacobian while corrections shrink fast.
+/// torques and forces may be mixed. Reuses a Jacobian while corrections shrink fast.
 ///
 /// Workspace for one size; one object per thread. solve() allocates nothing.
 ///

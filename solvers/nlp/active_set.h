@@ -24,7 +24,7 @@ struct ActiveSet {
 
 /// The bounds that a point lies on, or beyond.
 ///
-/// @param program    gives the bounds
+/// @param program    supplies the bounds
 /// @param x          scaled variables                            [n]
 /// @param c          scaled constraints                          [m]
 /// @param tolerance  distance from a bound, in typical sizes, that counts as on it
@@ -37,16 +37,16 @@ struct Dependence {
   std::vector<int> others;  ///< constraints of that combination; empty if the gradient is zero
 };
 
-/// Multipliers that a point without any has to have, if it is an optimum.
+/// The multipliers that a point given without any must have if it is an optimum.
 struct MultiplierEstimate {
   ActiveSet active;
   /// Scaled; multipliers of the wrong sign, and those of inactive constraints, are zero.
   PrimalDualPoint point;
   double stationarity = 0.0;  ///< ‖∇L‖∞ in scaled units; 0 at an optimum
-  /// False if the active constraints were too many (over 10⁶ entries of their dense Jacobian):
-  /// then their multipliers are zero, and dependences unknown.
+  /// False if there were too many active constraints (over 10⁶ entries in their dense Jacobian):
+  /// their multipliers are then zero, and dependences unknown.
   bool examined = true;
-  std::vector<Dependence> dependences;  ///< by the free variables, those on no bound
+  std::vector<Dependence> dependences;  ///< with respect to the free variables, those on no bound
 };
 
 /// The least-squares multipliers of the active constraints, by a dense QR decomposition.

@@ -10,7 +10,7 @@
 
 namespace hbar::solvers {
 
-/// What counts as what in a diagnosis, in units of the scales.
+/// Thresholds of a diagnosis, in units of the scales.
 struct DiagnosisOptions {
   double tolerance = 1e-6;             ///< distance from a bound that counts as on it; violation
   double optimality_tolerance = 1e-5;  ///< gradient of the Lagrangian that counts as an optimum's
@@ -33,28 +33,29 @@ struct DependentConstraint {
   std::vector<std::string> others;  ///< empty: no free variable moves the constraint at all
 };
 
-/// What a point of a program is like: what holds it, what is wrong with it, what to try.
+/// The state of a point of a program: what holds it, what is wrong with it, what to try.
 struct Diagnosis {
   std::string outcome;      ///< what the optimiser said; may be empty
   double objective = 0.0;   ///< f
-  Violation violation;      ///< the worst, of constraints and bounds
+  Violation violation;      ///< the worst of constraints and bounds
   double stationarity = 0;  ///< largest entry of the Lagrangian's gradient, in units of the scales
   std::string least_stationary;          ///< its variable; empty if stationarity is 0
   std::vector<ActiveBound> constraints;  ///< active ones, equations among them
   std::vector<ActiveBound> variables;    ///< on a bound; those with lower = upper are not listed
-  bool dependences_known = true;         ///< false where there were too many to look
+  bool dependences_known = true;         ///< false if there were too many to examine
   std::vector<DependentConstraint> dependent;
   std::vector<std::string> advice;  ///< what to try, most important first; empty at an optimum
 
-  /// All of it in words, several lines: of many active bounds the ten with the largest multipliers.
+  /// All of it as text of several lines; of many active bounds, the ten with the largest
+  /// multipliers.
   [[nodiscard]] std::string text() const;
 };
 
 /// Examines a point.
 ///
 /// @param nlp      the program, evaluated at the point
-/// @param point    multipliers may be missing; whichever of these and the least-squares ones leave
-///                 the smaller gradient of the Lagrangian are reported
+/// @param point    multipliers may be missing; reports these or the least-squares ones, whichever
+///                 leave the smaller gradient of the Lagrangian
 /// @param outcome  what the optimiser said
 /// @param options  see there
 /// @throws InvalidInput if the program is inconsistent or sizes disagree

@@ -17,7 +17,7 @@
 
 namespace hbar::solvers {
 
-/// One accepted iterate of Ipopt, as its own table of iterations shows it.
+/// One accepted iterate of Ipopt, as in its own table of iterations.
 struct IterationInfo {
   int iteration = 0;                ///< from 0, the start
   bool restoring = false;           ///< in the feasibility restoration phase
@@ -32,29 +32,29 @@ struct IterationInfo {
   double elapsed = 0.0;             ///< wall time since the start, s
 };
 
-/// What Ipopt is asked to do.
+/// Options for Ipopt.
 struct IpoptOptions {
   double tolerance = 1e-8;  ///< scaled optimality error of an optimum
   /// Largest violation of a feasible point, in units of the constraints' scale.
   double constraint_tolerance = 1e-6;
-  double acceptable_tolerance = 1e-6;  ///< optimality error that will do if no progress is made
+  double acceptable_tolerance = 1e-6;  ///< optimality error accepted if no progress is made
   int max_iterations = 500;
   double max_wall_time = std::numeric_limits<double>::infinity();  ///< s
   /// kExact and kGaussNewton ask the program; kLimitedMemory is Ipopt's L-BFGS.
   HessianKind hessian = HessianKind::kLimitedMemory;
   double objective_scale = 1.0;  ///< typical size > 0 of the objective; Ipopt sees f over it
-  /// Where to begin instead of NlpVariables::start: at an earlier result's point(), say. Ipopt then
-  /// starts with these multipliers and this barrier parameter (1e-6 if mu is 0), and moves the
+  /// Where to begin instead of NlpVariables::start, for example an earlier result's point(). Ipopt
+  /// then starts with these multipliers and this barrier parameter (1e-6 if mu is 0), and moves the
   /// point away from its bounds by no more than 1e-9.
   std::optional<PrimalDualPoint> warm_start = {};
   int print_level = 0;  ///< 0: silent; 1 to 12: Ipopt writes to standard output
 
-  /// Further options under Ipopt's names; they win over those above.
+  /// Further options under Ipopt's names; they take precedence over those above.
   std::map<std::string, std::string> string_options = {};
   std::map<std::string, double> number_options = {};
   std::map<std::string, int> integer_options = {};
 
-  /// Called at every iterate; false stops. An exception passes out of solve_with_ipopt.
+  /// Called at every iterate; returning false stops. Exceptions propagate out of solve_with_ipopt.
   std::function<bool(const IterationInfo&)> on_iteration = {};
   /// Stops soon after it becomes true (a signal handler may set it); may be null.
   const std::atomic<bool>* stop = nullptr;
@@ -64,11 +64,11 @@ struct IpoptOptions {
 struct IpoptOptionInfo {
   std::string name;
   std::string description;  ///< one line; Ipopt leaves some empty
-  /// What Ipopt takes unless told; its type says which map the option belongs into.
+  /// Ipopt's default; its type tells which map the option belongs in.
   std::variant<std::string, double, int> default_value;
 };
 
-/// Every option of the Ipopt that is linked, by name.
+/// Every option of the linked Ipopt, by name.
 [[nodiscard]] std::vector<IpoptOptionInfo> known_ipopt_options();
 
 /// How an optimisation ended.
@@ -85,7 +85,7 @@ enum class IpoptStatus {
   kDiverging,          ///< the variables grow without bound
   kRestorationFailed,  ///< no feasible point was found on the way
   kStepFailed,         ///< the linear system of a step could not be solved
-  kEvaluationFailed,   ///< a function failed where Ipopt could not do without it
+  kEvaluationFailed,   ///< a function failed where Ipopt needed its value
   kTooFewVariables,    ///< more equations than free variables
   kOutOfMemory,
   kInternalError,  ///< anything else
@@ -94,10 +94,10 @@ enum class IpoptStatus {
 /// "optimal", "iteration limit", …
 [[nodiscard]] std::string_view to_string(IpoptStatus status);
 
-/// What to try after an optimisation that ended so; empty after an optimum.
+/// What to try after an optimisation that ended this way; empty after an optimum.
 [[nodiscard]] std::string_view advice(IpoptStatus status);
 
-/// What an optimisation reached. When Ipopt did not converge, x is the best feasible point that was
+/// The result of an optimisation. If Ipopt did not converge, x is the best feasible point
 /// evaluated, or the least infeasible one if none was feasible.
 struct IpoptResult {
   IpoptStatus status = IpoptStatus::kInternalError;
@@ -106,7 +106,7 @@ struct IpoptResult {
   Eigen::VectorXd x;       ///< variables                                       [n]
   Eigen::VectorXd c;       ///< constraints at x                                [m]
   double objective = 0.0;  ///< f(x)
-  Violation violation;     ///< the largest, of constraints and bounds
+  Violation violation;     ///< the largest of constraints and bounds
   /// Multipliers of Ipopt's last iterate, with ∇f + (dc/dx)ᵀ λ − z_L + z_U = 0 at an optimum.
   Eigen::VectorXd constraint_multipliers;  ///< λ                                   [m]
   Eigen::VectorXd lower_multipliers;       ///< z_L ≥ 0                             [n]
@@ -130,15 +130,14 @@ struct IpoptResult {
 ///
 /// Variables, constraints and the objective are divided by their scales for Ipopt; everything in
 /// the options, the callback and the result is in the program's own units unless it says otherwise.
-/// Optimisations of several threads wait for each other, because Ipopt with MUMPS is not reentrant;
-/// the program and the callback must not call solve_with_ipopt themselves. No file ipopt.opt is
-/// read.
+/// Optimisations in several threads are serialised, because Ipopt with MUMPS is not reentrant; the
+/// program and the callback must not call solve_with_ipopt themselves. No file ipopt.opt is read.
 ///
 /// @param nlp      the program
 /// @param options  see there
 /// @returns how it ended and the best point; always look at converged()
-/// @throws InvalidInput if the program is inconsistent (see validate), has no Hessian of the kind
-///   asked for, the warm start is of another size, or an option is unknown or has a value that
+/// @throws InvalidInput if the program is inconsistent (see validate), has no Hessian of the
+///   requested kind, the warm start has the wrong size, or an option is unknown or has a value that
 ///   Ipopt does not allow
 /// @throws whatever the program (other than EvaluationError) or the callback throws
 [[nodiscard]] IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options = {});

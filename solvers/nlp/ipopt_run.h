@@ -10,13 +10,13 @@ class IpoptApplication;
 
 namespace hbar::solvers {
 
-/// Hands options to Ipopt, each checked first, so that Ipopt has nothing to print.
+/// Passes options to Ipopt after checking each, so that Ipopt has nothing to print.
 ///
 /// @throws InvalidInput if an option is unknown (naming the nearest one), of another type, out of
-///   its range, or one that IpoptOptions decides
+///   its range, or reserved for IpoptOptions
 void set_ipopt_options(Ipopt::IpoptApplication& application, const IpoptOptions& options);
 
-/// What solve_with_ipopt does, with Ipopt's warnings and summaries written to a stream.
+/// Like solve_with_ipopt, with Ipopt's warnings and summaries written to a stream.
 ///
 /// @param journal  may be null
 [[nodiscard]] IpoptResult run_ipopt(Nlp& nlp, const IpoptOptions& options, std::ostream* journal);

@@ -13,7 +13,7 @@
 
 namespace hbar::solvers {
 
-/// The methods of NLopt that are offered.
+/// The supported methods of NLopt.
 enum class NloptAlgorithm {
   kLbfgs,  ///< limited-memory BFGS with bounds, without constraints (L. Luksan's code)
   kSlsqp   ///< sequential quadratic programming with bounds and constraints (D. Kraft's code);
@@ -27,7 +27,7 @@ struct NloptEvaluation {
   double elapsed = 0.0;    ///< wall time since the start, s
 };
 
-/// What NLopt is asked to do. Tolerances are in units of the scales of variables, constraints and
+/// Options for NLopt. Tolerances are in units of the scales of variables, constraints and
 /// objective.
 struct NloptOptions {
   NloptAlgorithm algorithm = NloptAlgorithm::kLbfgs;
@@ -38,9 +38,10 @@ struct NloptOptions {
   double variable_tolerance = 1e-12;  ///< stops when a step changes every variable by less
   int max_evaluations = 10000;        ///< of the objective
   double max_wall_time = std::numeric_limits<double>::infinity();  ///< s
-  int memory = 0;                ///< pairs of vectors that kLbfgs keeps; 0: NLopt's choice
+  int memory = 0;                ///< vector pairs that kLbfgs keeps; 0: NLopt's choice
   double objective_scale = 1.0;  ///< typical size > 0 of the objective
-  /// Called after every evaluation; false stops. An exception passes out of minimise_with_nlopt.
+  /// Called after every evaluation; returning false stops. Exceptions propagate out of
+  /// minimise_with_nlopt.
   std::function<bool(const NloptEvaluation&)> on_evaluation = {};
   /// Stops soon after it becomes true (a signal handler may set it); may be null.
   const std::atomic<bool>* stop = nullptr;
@@ -49,8 +50,8 @@ struct NloptOptions {
 /// How a minimisation ended.
 enum class NloptStatus {
   kOptimal,           ///< feasible and stationary within the tolerances
-  kStalled,           ///< steps became too small before that
-  kRounding,          ///< rounding errors let no further step succeed
+  kStalled,           ///< steps became too small before reaching that
+  kRounding,          ///< rounding errors prevent further progress
   kInterrupted,       ///< the stop flag was set
   kStopped,           ///< the callback returned false
   kEvaluationLimit,   ///< max_evaluations
@@ -63,11 +64,10 @@ enum class NloptStatus {
 /// "optimal", "stalled", …
 [[nodiscard]] std::string_view to_string(NloptStatus status);
 
-/// What to try after a minimisation that ended so; empty after an optimum.
+/// What to try after a minimisation that ended this way; empty after an optimum.
 [[nodiscard]] std::string_view advice(NloptStatus status);
 
-/// What a minimisation reached: the best feasible point that was evaluated, or the least infeasible
-/// one.
+/// The result of a minimisation: the best feasible point evaluated, or the least infeasible one.
 struct NloptResult {
   NloptStatus status = NloptStatus::kFailed;
   std::string message;        ///< how it ended, what was reached and what to try
@@ -75,7 +75,7 @@ struct NloptResult {
   Eigen::VectorXd x;          ///< variables                                         [n]
   Eigen::VectorXd c;          ///< constraints at x                                  [m]
   double objective = 0.0;     ///< f(x)
-  Violation violation;        ///< the largest, of constraints and bounds
+  Violation violation;        ///< the largest of constraints and bounds
   double stationarity = 0.0;  ///< largest entry of the Lagrangian's gradient, in scales
   /// Least-squares multipliers at x (NLopt gives none), see estimate_multipliers.
   Eigen::VectorXd constraint_multipliers;  ///< λ                                     [m]
@@ -93,10 +93,10 @@ struct NloptResult {
 
 /// Minimises a nonlinear program with NLopt (LGPL; target hbar::nlopt), 2.6 or newer.
 ///
-/// NLopt's own verdicts only say that steps became small; whether a point is an optimum is decided
-/// here, by the Lagrangian's gradient. Where the program cannot be evaluated NLopt is told a value
-/// above all seen, so that its line search shortens the step. Calls from several threads are
-/// independent.
+/// NLopt's own status only says that steps became small; whether a point is an optimum is decided
+/// here, from the Lagrangian's gradient. Where the program cannot be evaluated, NLopt receives a
+/// value above all seen so far, so that its line search shortens the step. Calls from several
+/// threads are independent.
 ///
 /// @param nlp      the program
 /// @param options  see there

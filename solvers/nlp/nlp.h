@@ -9,7 +9,7 @@
 namespace hbar::solvers {
 
 /// Thrown by an Nlp where a point cannot be evaluated, for instance because a simulation failed
-/// there. An optimiser takes it as "shorten the step", not as the end.
+/// there. An optimiser then shortens its step instead of giving up.
 class EvaluationError : public NumericalFailure {
  public:
   using NumericalFailure::NumericalFailure;
@@ -33,24 +33,24 @@ struct NlpConstraints {
   Eigen::VectorXd scale;           ///< typical size > 0 of a change of c; empty: ones  [m or 0]
 };
 
-/// Where a matrix may be non-zero. Entries of one place are summed.
+/// Where a matrix may be non-zero. Entries at the same place are summed.
 struct SparsityPattern {
-  std::vector<int> rows;     ///< row of each entry, from 0: of dc/dx the constraint   [entries]
-  std::vector<int> columns;  ///< column of each entry, from 0: the variable           [entries]
+  std::vector<int> rows;     ///< row of each entry, from 0; in dc/dx the constraint   [entries]
+  std::vector<int> columns;  ///< column of each entry, from 0; the variable           [entries]
 };
 
 /// How the Hessian of the Lagrangian L = σ f + λᵀ c is obtained.
 enum class HessianKind {
   kExact,         ///< ∂²L/∂x²
-  kGaussNewton,   ///< what remains of it where residuals and curvature of c are left out
+  kGaussNewton,   ///< the same without the curvature of residuals and of c
   kLimitedMemory  ///< estimated by the optimiser from gradients; the program is not asked
 };
 
 /// A nonlinear program: minimise f(x) subject to lower ≤ x ≤ upper and lower ≤ c(x) ≤ upper.
 ///
-/// The descriptions are constant while a program is being solved. The evaluations may come at any
-/// x near the bounds and in any order; a program whose evaluations share work keeps
-/// the last x. Each may throw EvaluationError, and nothing else that is to be survived.
+/// The descriptions are constant while a program is being solved. Evaluations may be requested at
+/// any x near the bounds and in any order; a program whose evaluations share work remembers the
+/// last x. Each may throw EvaluationError; any other exception ends the optimisation.
 class Nlp {
  public:
   Nlp() = default;
@@ -85,8 +85,8 @@ class Nlp {
   /// @param values  output, sized by the caller  [entries]
   virtual void constraint_jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& values) = 0;
 
-  /// Where the Hessian of L = σ f + λᵀ c may be non-zero: places of its lower triangle
-  /// (row ≥ column) alone.
+  /// Where the Hessian of L = σ f + λᵀ c may be non-zero: places in its lower triangle
+  /// (row ≥ column) only.
   ///
   /// @param kind  kExact or kGaussNewton
   /// @throws InvalidInput if the program has no second derivatives of that kind, saying why (as
@@ -112,7 +112,8 @@ class Nlp {
 ///   bounds, a scale is not positive, or the Jacobian pattern points outside the matrix
 void validate(const Nlp& nlp);
 
-/// Refuses a program whose Hessian has no consistent pattern; says nothing to kLimitedMemory.
+/// Refuses a program whose Hessian has no consistent pattern; accepts any program for
+/// kLimitedMemory.
 ///
 /// @param nlp   validated
 /// @param kind  which Hessian is to be used

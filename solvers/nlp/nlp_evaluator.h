@@ -18,8 +18,8 @@ struct EvaluationCounts {
   int failures = 0;  ///< calls that threw EvaluationError or gave a number that is not finite
 };
 
-/// The best point seen: of the feasible ones that of least objective; if there is none, the least
-/// infeasible one.
+/// The best point seen: the feasible one with the lowest objective or, if none is feasible, the
+/// least infeasible one.
 struct BestPoint {
   bool found = false;      ///< whether any point was evaluated completely
   bool feasible = false;   ///< violation within the tolerance
@@ -29,16 +29,16 @@ struct BestPoint {
   double violation = 0.0;  ///< of the worst constraint or bound, in units of its typical size
 };
 
-/// Evaluates an Nlp for an optimiser: each function at most once per x and only when asked, failed
-/// evaluations as `nullptr`, any other exception kept for later, the best point remembered. Knows
-/// no optimiser.
+/// Evaluates an Nlp for an optimiser: each function at most once per x and only on request; failed
+/// evaluations give `nullptr`; any other exception is kept for later; the best point is remembered.
+/// Independent of any optimiser.
 class NlpEvaluator {
  public:
   /// @param nlp        validated; must outlive this object
   /// @param tolerance  largest violation of a feasible point, in units of the typical sizes
   NlpEvaluator(Nlp& nlp, double tolerance);
 
-  /// The value at x, or nullptr if x cannot be evaluated. A pointer is good until the next call
+  /// The value at x, or nullptr if x cannot be evaluated. The pointer is valid until the next call
   /// with another x.
   ///
   /// @param x  variables  [n]
@@ -62,7 +62,7 @@ class NlpEvaluator {
   [[nodiscard]] const std::string& last_failure() const { return last_failure_; }
 
   /// The exception, other than EvaluationError, that an evaluation threw. From then on every
-  /// evaluation fails without a call.
+  /// evaluation fails without calling the program.
   [[nodiscard]] const std::exception_ptr& exception() const { return exception_; }
 
  private:

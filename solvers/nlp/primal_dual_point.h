@@ -12,7 +12,7 @@ struct PrimalDualPoint {
       {};                                  ///< λ: > 0 at an upper bound, < 0 at a lower one [m]
   Eigen::VectorXd lower_multipliers = {};  ///< z_L ≥ 0                                     [n]
   Eigen::VectorXd upper_multipliers = {};  ///< z_U ≥ 0                                     [n]
-  double mu = 0.0;  ///< barrier parameter of an interior-point method there; 0: not known
+  double mu = 0.0;  ///< barrier parameter of an interior-point method there; 0: unknown
 };
 
 }  // namespace hbar::solvers

@@ -10,10 +10,10 @@
 
 namespace hbar::solvers {
 
-/// Typical sizes of variables that have none of their own, from what is known of them: half the
-/// range where both bounds are finite and differ; else max(|start|, 1).
+/// Typical sizes for variables without a given scale: half the range if both bounds are finite and
+/// differ; else max(|start|, 1).
 ///
-/// @param lower  lower bounds; ± infinity where there is none  [n]
+/// @param lower  lower bounds; ± infinity if there is none     [n]
 /// @param upper  upper bounds                                  [n]
 /// @param start  where to begin                                [n]
 /// @returns sizes > 0                                          [n]
@@ -23,8 +23,8 @@ namespace hbar::solvers {
                                                 const Eigen::VectorXd& start);
 
 /// A program as an optimiser sees it: variables, constraints and objective divided by their typical
-/// sizes, failures as `false`. Whatever goes in or out of a function named `scaled` is in these
-/// units; everything else is in the program's. Knows no optimiser.
+/// sizes, failures reported as `false`. Functions named `scaled` take and return these units;
+/// everything else is in the program's. Independent of any optimiser.
 class ScaledNlp {
  public:
   using Span = Eigen::Ref<Eigen::VectorXd>;
@@ -33,7 +33,7 @@ class ScaledNlp {
   /// @param nlp              validated, also for `hessian`; must outlive this object
   /// @param tolerance        largest violation of a feasible point, in units of the typical sizes
   /// @param objective_scale  typical size > 0 of the objective
-  /// @param hessian          which Hessian will be asked for
+  /// @param hessian          which Hessian will be requested
   /// @throws InvalidInput if objective_scale is not positive
   ScaledNlp(Nlp& nlp, double tolerance, double objective_scale,
             HessianKind hessian = HessianKind::kLimitedMemory);
@@ -68,16 +68,16 @@ class ScaledNlp {
 
   /// A point in the optimiser's units.
   ///
-  /// @param point  in the program's units; x is moved into its bounds, multipliers of size zero
-  ///               stand for zeros
-  /// @throws InvalidInput if a size is another one, or a number is not finite
+  /// @param point  in the program's units; x is moved into its bounds, empty multipliers stand for
+  ///               zeros
+  /// @throws InvalidInput if a size differs, or a number is not finite
   [[nodiscard]] PrimalDualPoint scaled(const PrimalDualPoint& point) const;
   /// A point in the program's units, x within its bounds.
   [[nodiscard]] PrimalDualPoint unscaled(PrimalDualPoint point) const;
 
-  /// Throws what made the last evaluation fail.
+  /// Throws the error that made the last evaluation fail.
   ///
-  /// @param who  begins the message: "sensitivity"
+  /// @param who  beginning of the message, such as "sensitivity"
   /// @throws EvaluationError, or whatever else the program threw
   [[noreturn]] void throw_failure(const char* who) const;
 
