@@ -2,7 +2,7 @@
 #
 #   hbar_mumps::seq
 #
-# It is looked for under the names of Debian's packages (libdmumps_seq, libmumps_common_seq). Shared
+# It is searched for under the names of Debian's packages (libdmumps_seq, libmumps_common_seq). Shared
 # ones bring their stub of MPI, and orderings, along; static ones need them named here. Static
 # libraries need hbarConfig.cmake to call this before it includes the exported targets; so this file
 # is installed beside it.

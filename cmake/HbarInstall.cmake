@@ -1,5 +1,5 @@
 # Installation: libraries, find_package(hbar), and under include/hbar the headers that users include
-# with all that these include. No other header is anybody's business.
+# with all that these include. Other headers are not installed.
 
 # hbar_closure(OUT HEADERS...): the headers, and those of the layers that they include.
 function(hbar_closure out)
@@ -25,7 +25,7 @@ set(users ${HBAR_USER_HEADERS})
 foreach(component IN LISTS HBAR_OPTIONAL_COMPONENTS)
   if(NOT TARGET hbar_${component})
     list(FILTER users EXCLUDE REGEX "/${component}\\.h$")
-    # Whoever includes its header learns what is missing.
+    # Including its header reports what is missing.
     set(HBAR_MISSING ${component})
     set(HBAR_MISSING_NEEDS ${HBAR_NEEDS_${component}})
     configure_file(${PROJECT_SOURCE_DIR}/cmake/missing_component.h.in

@@ -3,7 +3,8 @@
 namespace hbar {
 namespace {
 
-/// A scalar force law of d and ḋ: its value, slopes, and slopes by (k_n, μ, k_d, s).
+/// A scalar force law of d and ḋ: its value, slopes, and derivatives with respect to (k_n, μ, k_d,
+/// s).
 template <Scalar S>
 struct ScalarLaw {
   S value = S(0.0);
@@ -56,7 +57,7 @@ ScalarLaw<S> friction_bound(const LawChoice& law, const LawNumbers<S>& k, const 
           slope * normal.by_scale};
 }
 
-/// The law evaluated as far as value and derivatives share it.
+/// The part of the law that value and derivatives share.
 template <Scalar S>
 struct Evaluation {
   S rate;              // ḋ
@@ -86,7 +87,7 @@ Evaluation<S> evaluate(const LawChoice& law, const LawNumbers<S>& k, const S& d,
       out.stick_stiffness * out.stick_stiffness * squared <= out.bound.value * out.bound.value;
   out.on_stick_branch = !smooth && within;
   if (squared == 0.0 && out.bound.value == 0.0) {
-    out.stick_stiffness = S(0.0);  // nothing to hold with: sliding has no direction either
+    out.stick_stiffness = S(0.0);  // no force to stick with: sliding has no direction either
   }
   Vector3<S> friction;
   if (out.on_stick_branch) {

@@ -3,7 +3,7 @@
 namespace hbar {
 namespace {
 
-/// Where B feels the force.
+/// Where the force acts on B.
 template <Scalar S>
 Vector3<S> reaction_point(Reaction reaction, const TouchingPoint<S>& point) {
   return reaction == Reaction::kPoint ? point.x : Vector3<S>(point.x - point.d * point.n);
@@ -110,7 +110,7 @@ void add_stiffness(Reaction reaction, const PairMotion<S>& motion, const Touchin
   const Matrix3<S> F = skew<S>(point.force.f);
   const Matrix3<S> own_arm = F * point.dx_dlever;
   add_sandwich<S>(x, at.force, c, out.K_a);
-  // The lever arm changes, too: δx × f.
+  // The lever arm changes too: δx × f.
   out.K_a.template topLeftCorner<3, 3>().noalias() += own_arm * skew<S>(c);
   out.K_a.template topRightCorner<3, 3>() -= own_arm;
   add_sandwich<S>(x, point.law.by_u, x, out.C_a);

@@ -7,14 +7,14 @@
 namespace hbar {
 namespace {
 
-/// Distance to a point (rank 3) or to a line along z (rank 2) less a radius, at the offset y.
+/// Distance to a point (rank 3) or to a line along z (rank 2) minus a radius, at the offset y.
 template <Scalar S>
 SurfaceSample<S> round_sample(const Vector3<S>& y, const S& radius, int rank) {
   using std::sqrt;
   const S squared = y.squaredNorm();
   SurfaceSample<S> out;
   if (!(squared > 0.0)) {
-    // On the centre every direction is as good: no curvature is better than an infinite one.
+    // At the centre all directions are equivalent: zero curvature is better than an infinite one.
     out.d = -radius;
     out.n = Vector3<S>::UnitX();
     out.gradient = out.n;

@@ -5,14 +5,14 @@
 namespace hbar {
 namespace {
 
-/// Whether two contacts ask for the same distance; with and without caps it is one.
+/// Whether two contacts use the same distance; caps make no difference.
 bool share_distance(const Contact& a, const Contact& b) {
   const bool own =
       std::holds_alternative<OwnShape>(a.surface) && std::holds_alternative<OwnShape>(b.surface);
   return a.other == b.other && (own || a.surface == b.surface);
 }
 
-/// Distinct distance sides of a model's contacts that are bodies.
+/// The distinct surface sides of a model's contacts that are bodies.
 std::vector<Contact> distance_sides(const Model& model) {
   std::vector<Contact> sides;
   for (const Contact& contact : model.contacts()) {
@@ -33,14 +33,14 @@ SurfaceDistance<S> surface_of(const Model& model, const Mechanism<S>& mechanism,
           mechanism.sizes.col(contact.other)};
 }
 
-/// Covectors on both bodies of weight·f, the weight being carried along with A.
+/// Covectors on both bodies of weight·f, with the weight carried along with A.
 template <Scalar S>
 void add_covectors(const Contact& contact, const PairMotion<S>& pair, const TouchingPoint<S>& point,
                    const Vector3<S>& weight, LinkPullback<S>& links) {
   const Vector3<S> by_x = point_slopes<S>(contact.reaction, pair, point).force.transpose() * weight;
   const Vector3<S> by_u = point.law.by_u.transpose() * weight;
   const Vector6<S> by_twist = spatial<S>(point.x.cross(by_u), by_u);
-  // What the force loses by turning with B instead of with A; formulation §6.
+  // Correction because the force turns with B rather than with A.
   const Vector3<S> turned = point.x.cross(by_x) - point.force.f.cross(weight);
   const Vector6<S> by_displacement =
       sum<S>(spatial<S>(turned, by_x), cross_wrench<S>(pair.a.V, by_twist));
@@ -124,7 +124,8 @@ void TactileReadings<S>::read(int sensor, Eigen::Ref<VectorX<S>> out) const {
   }
 }
 
-/// What a weight on a point's force means for its scale, and for the sizes that it feels.
+/// The effect of a weight on a point's force on its scale, and on the sizes of the surface it
+/// senses.
 template <Scalar S>
 void TactileReadings<S>::add_parameters(const Side& side, const TouchingPoint<S>& point,
                                         const Vector3<S>& weight, const Applied<S>& applied,

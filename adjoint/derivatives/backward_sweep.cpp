@@ -31,7 +31,8 @@ void BackwardSweep<S>::set_point(const SweptTrajectory<S>& at, int s) {
   History::set_rates<S>(qdot_past_, a_past_, point_);
 }
 
-/// Brings the weights on what is measured at step k to coordinates, rates, controls, parameters.
+/// Pulls the weights on what is measured at step k back to coordinates, rates, controls,
+/// parameters.
 template <Scalar S>
 void BackwardSweep<S>::add_outputs(const SweptTrajectory<S>& at, const SweptWeights<S>& weights,
                                    int k, const Instant<S>& instant) {
@@ -46,7 +47,7 @@ void BackwardSweep<S>::sweep_stage(const SweptTrajectory<S>& at, int s, const So
   const double rate = point_.rate;
   y_ = q_bar_.col(s) + rate * qdot_bar_.col(s);
   solve(s, y_, stage_, z_);
-  // L = Ψ − Σ zᵀ g: what is left of ∂L/∂a and ∂L/∂q̇ goes to the past.
+  // L = Ψ − Σ zᵀ g: the remaining ∂L/∂a and ∂L/∂q̇ are passed on to earlier stages.
   const JointForces<S>& forces = stage_.joint_forces();
   const double c = stage_.c();
   y_a_ = -stage_.by_a();

@@ -45,12 +45,12 @@ struct InputClass {
   std::vector<double> scales;
 };
 
-/// How far a parameter may be moved: a share of its nominal value; moments no further than what
-/// keeps their triangle possible.
+/// How far a parameter may be moved: a fraction of its nominal value; moments only as far as the
+/// triangle inequality allows.
 double probe_size(const Model& model, const Parameter& parameter) {
   double size = std::abs(parameter.nominal);
   if (parameter.kind == ParameterKind::kContactPoint) {
-    // A coordinate may well be zero: what counts is the body's extent.
+    // A coordinate may be zero, so the body's extent counts.
     size = model.link(parameter.owner).body.contact_points.cwiseAbs().maxCoeff();
     return size > 0.0 ? 0.1 * size : 1.0;
   }
@@ -119,9 +119,9 @@ double log_slope(const std::vector<double>& x, const std::vector<double>& y) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-/// Tells the smooth pieces of Ψ apart. Contact bends it wherever, at some stage, a point begins to
-/// touch, to slide or to feel another face, and halved steps and changes of chart make it jump:
-/// differences across such a place mix the derivatives of both sides.
+/// Distinguishes the smooth pieces of Ψ. Contact puts a kink wherever, at some stage, a point
+/// begins to touch, to slide or to sense another face, and halved steps and changes of chart make Ψ
+/// jump: differences across such a place mix the derivatives of both sides.
 class PieceReader {
  public:
   explicit PieceReader(const Horizon& horizon)
@@ -130,7 +130,7 @@ class PieceReader {
         contacts_(horizon.model()),
         none_(Eigen::VectorXd::Zero(horizon.model().dof())) {}
 
-  /// Numbers that are the same for two trajectories exactly if no such place separates them.
+  /// Numbers that agree for two trajectories exactly if no such place separates them.
   std::vector<int> read(const Trajectory& trajectory, const TrajectoryValues& values) {
     const Model& model = horizon_.model();
     std::vector<int> piece;
@@ -204,7 +204,7 @@ class PieceReader {
   Eigen::VectorXd none_;
 };
 
-/// Everything the probes of one problem share.
+/// State shared by all probes of one problem.
 class Prober {
  public:
   Prober(const Problem& problem, const GradientCheckOptions& options)
@@ -270,12 +270,12 @@ class Prober {
     double class_norm = 0.0;
     for (std::size_t i = 0; i < inputs.entries.size(); ++i) {
       d[inputs.entries[i]] = uniform(random_) * inputs.scales[i];
-      // Measured in the class's own sizes, so that a mass and a moment weigh alike.
+      // Measured in the class's own typical sizes, so that a mass and a moment count equally.
       class_norm += std::pow(gradient_[inputs.entries[i]] * inputs.scales[i], 2);
     }
     class_norm = std::sqrt(class_norm);
     const double slope = gradient_.dot(d);
-    // A class that Ψ hardly depends on is measured against Ψ: differences resolve no more.
+    // A class that Ψ hardly depends on is measured relative to Ψ: differences resolve no more.
     double scale = std::max(class_norm, 1e-4 * std::abs(value_));
     if (scale == 0.0) {
       scale = 1.0;  // at rest and at the optimum: absolute figures
@@ -294,9 +294,9 @@ class Prober {
     return std::abs(slope - forward) / std::max({scale, product, dual_product});
   }
 
-  /// Central differences, extrapolated once, at steps from 2e-2 down: the best of them counts.
-  /// The Taylor remainder is followed while it stands well above rounding. Smaller steps are taken
-  /// for those that leave the smooth piece of Ψ.
+  /// Central differences, extrapolated once, at steps from 2e-2 down; the best one counts. The
+  /// Taylor remainder is followed while it is well above rounding. Steps that leave the smooth
+  /// piece of Ψ are replaced by smaller ones.
   void differences(const Eigen::VectorXd& d, double slope, double scale, GradientCheckRow& row) {
     constexpr int kSteps = 12;
     constexpr double kSmallestStep = 1e-7;
@@ -310,7 +310,7 @@ class Prober {
       const std::optional<double> ahead = value_at(x_ + step * d);
       const std::optional<double> behind = ahead ? value_at(x_ - step * d) : std::nullopt;
       if (!behind) {
-        taken = 0;  // larger steps that came back to the piece have been elsewhere in between
+        taken = 0;  // larger steps that returned to the piece have left it in between
         steps.clear();
         remainders.clear();
         best = std::numeric_limits<double>::infinity();
@@ -324,7 +324,7 @@ class Prober {
       }
       last_difference = difference;
       ++taken;
-      // The larger of both sides: one alone may change its sign, where it has no order.
+      // The larger of both sides: one alone may change sign, where it has no order.
       const double remainder = std::max(std::abs(*ahead - value_ - step * slope),
                                         std::abs(*behind - value_ + step * slope));
       if (remainder > 1e3 * rounding) {

@@ -62,7 +62,7 @@ struct Linearizer::Workspace {
   std::vector<std::vector<int>> pattern;
   std::vector<std::vector<int>> rows_of_block;  // per parameter block
   Linearization out;
-  Timeline timeline;                     // that the patterns were laid out for
+  Timeline timeline;                     // for which the patterns were laid out
   std::vector<std::size_t> first_block;  // of H, per stage
   std::vector<std::size_t> first_q0;     // of dg_dq0 (and dg_dqdot0), per stage
   int pattern_count = 0;

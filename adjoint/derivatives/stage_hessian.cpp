@@ -60,7 +60,7 @@ void StageHessian::set_zero() {
   out_.by_p.setZero();
 }
 
-/// by_q_ and by_qdot_ of zᵀ g at the point as it is.
+/// by_q_ and by_qdot_ of zᵀ g at the current point.
 void StageHessian::linearize_stage(const Mechanism<Dual>& mechanism) {
   stage_.linearize(mechanism, point_, g_);
   stage_.pull_back(z_);

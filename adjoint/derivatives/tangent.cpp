@@ -106,7 +106,7 @@ class MeasuredTangent {
   Eigen::VectorXd by_q_, by_qdot_, by_u_, by_p_;
 };
 
-/// δq̇ of a stage from δq of the stages it looks back on.
+/// δq̇ of a stage from δq of the stages it depends on.
 Eigen::MatrixXd rate_tangent(const Model& model, const Trajectory& trajectory, int s,
                              const Eigen::MatrixXd& dq, const Eigen::MatrixXd& dqdot0) {
   const int n = model.dof();

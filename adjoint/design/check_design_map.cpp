@@ -14,7 +14,7 @@ Eigen::VectorXd row_norms(const Eigen::MatrixXd& scaled_jacobian) {
   return scaled_jacobian.rowwise().norm().unaryExpr([](double x) { return x > 0.0 ? x : 1.0; });
 }
 
-/// A direction that moves every variable, each differently.
+/// A direction that changes every variable, each differently.
 Eigen::VectorXd uneven_direction(Eigen::Index size) {
   Eigen::VectorXd direction(size);
   for (Eigen::Index i = 0; i < size; ++i) {
@@ -52,7 +52,7 @@ Eigen::VectorXd column_of_differences(const OfStep& f, Eigen::Index i, Eigen::In
   return (4.0 * central(5e-3) - central(1e-2)) / 3.0;
 }
 
-/// The part of check_design_map that is about the Hessian.
+/// The part of check_design_map for the Hessian.
 void check_map_hessian(const DesignMap& map, const Eigen::VectorXd& d, const Eigen::VectorXd& norms,
                        DesignMapCheck& out) {
   const DesignVariables& variables = map.variables();

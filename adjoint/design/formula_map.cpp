@@ -65,7 +65,7 @@ class FormulaMap final : public DesignMap {
   }
 
  private:
-  /// p with slopes by variables i and j; −1: by none.
+  /// p with slopes along variables i and j; −1: none.
   [[nodiscard]] std::vector<HyperDual> evaluate(const Eigen::VectorXd& d, Index i, Index j) const {
     if (d.size() != variables_.size()) {
       throw InvalidInput(concat("formula_map: d has ", d.size(), " entries; the map has ",
@@ -102,7 +102,7 @@ class FormulaMap final : public DesignMap {
     return J;
   }
 
-  /// A variable that is no number leaves its mark on all that depends on it.
+  /// A variable set to NaN makes everything that depends on it NaN.
   void find_dependence() {
     const Eigen::VectorXd& start = variables_.start;
     const Eigen::MatrixXd J = differentiate(start);

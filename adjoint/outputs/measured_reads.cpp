@@ -19,7 +19,7 @@ Coordinates all_coordinates(const Model& model) {
   return out;
 }
 
-/// Coordinates that move a link, ascending; none of the world.
+/// Coordinates that move a link, ascending; none for the world.
 Coordinates path_of_link(const Model& model, int link) {
   Coordinates out;
   for (int c = 0; link >= 0 && c < model.dof(); ++c) {
@@ -30,7 +30,7 @@ Coordinates path_of_link(const Model& model, int link) {
   return out;
 }
 
-/// Coordinates that move one link against the other: what moves both leaves them as they are.
+/// Coordinates that move one link relative to the other: those that move both do not count.
 Coordinates relative_path(const Model& model, int a, int b) {
   const Coordinates moves_a = path_of_link(model, a);
   const Coordinates moves_b = path_of_link(model, b);

@@ -23,7 +23,7 @@ Vector3<S> velocity_at(const BodyMotion<S>& body, const Vector3<S>& x) {
   return body.V.template tail<3>() + Vector3<S>(body.V.template head<3>()).cross(x);
 }
 
-/// The surface of a BodyDistance with present sizes.
+/// The surface of a BodyDistance with current sizes.
 template <Scalar S>
 SurfaceDistance<S> measured_surface(const Model& model, const Mechanism<S>& mechanism,
                                     const BodyDistance& m) {
@@ -31,7 +31,7 @@ SurfaceDistance<S> measured_surface(const Model& model, const Mechanism<S>& mech
   return {m.surface, model.link(owner).body.shape, mechanism.sizes.col(owner)};
 }
 
-/// Rotation from the wanted orientation to the body's.
+/// Rotation from the desired orientation to the body's.
 template <Scalar S>
 Matrix3<S> orientation_error(const Orientation& m, const BodyMotion<S>& body) {
   return m.R_0T.transpose().cast<S>() * body.X_WB.R;
@@ -73,7 +73,7 @@ void add_force(const Instant<S>& at, int motor, int c, int i, const MotorForce<S
   add_parameter<S>(at, ParameterKind::kMotorD, motor, 0, weight * force.by_D, out);
 }
 
-/// Whether weights have any effect: dual ones count that only move.
+/// Whether weights have any effect; dual weights count even if only their slope is non-zero.
 template <Scalar S, typename Weights>
 bool counts(const Weights& weights) {
   return std::any_of(weights.begin(), weights.end(), [](const S& weight) {
@@ -175,7 +175,7 @@ void Measurements<S>::read(const Orientation& m, At at, Rows out) const {
 template <Scalar S>
 void Measurements<S>::weigh(const Orientation& m, At at, Weights y, Out) {
   const Vector3<S> r = log_rotation(orientation_error<S>(m, body_at<S>(model_, at, m.link)));
-  // A turn by w of the body makes of exp([r]) exp([R_0Tᵀ w]) exp([r]): δr = J_r(r)⁻ᵀ R_0Tᵀ w.
+  // Rotating the body by w turns exp([r]) into exp([R_0Tᵀ w]) exp([r]): δr = J_r(r)⁻ᵀ R_0Tᵀ w.
   const Vector3<S> torque = m.R_0T.cast<S>() * (right_jacobian_inverse<S>(r) * y);
   links_.add_to_body(m.link, spatial<S>(torque, Vector3<S>::Zero()), Vector6<S>::Zero());
 }
@@ -240,7 +240,7 @@ void Measurements<S>::weigh_touch(const ActivePair<S>& pair, const TouchingPoint
                                             cross_wrench<S>(pair.motion.a.V, by_twist));
   links_.add_to_body(contact.link, by_displacement, by_twist);
   if (contact.other >= 0) {
-    // Both bodies displaced alike turn f and leave f_n as it is.
+    // Displacing both bodies alike rotates f and leaves f_n unchanged.
     const Vector6<S> turned = spatial<S>(point.force.f.cross(fixed), Vector3<S>::Zero());
     Vector6<S> by_other_twist = -by_twist;
     if (contact.reaction == Reaction::kSurface) {
@@ -303,7 +303,7 @@ void Measurements<S>::weigh(const MotorPower& m, At at, Weights y, Out out) {
   });
 }
 
-/// What weights on the links' masses mean for the parameters that these follow.
+/// The effect of weights on the links' masses on the parameters that determine these masses.
 ///
 /// @param weight  weight(link)
 template <Scalar S>

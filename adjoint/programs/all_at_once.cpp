@@ -152,7 +152,7 @@ void AllAtOnce::move_to(const Eigen::VectorXd& x) {
       if (!g_bar_.allFinite()) {
         failure_ = "all-at-once: the residual is not finite at this point";
       }
-    } catch (const InvalidInput& error) {  // parameters that no body can have
+    } catch (const InvalidInput& error) {  // parameters that are physically impossible
       failure_ = error.what();
     }
   }

@@ -9,8 +9,8 @@
 namespace hbar {
 namespace {
 
-/// Visits the pairs of a stage's runs of x that have second derivatives: f(a, b), b not behind a.
-/// Coordinates meet those of another run at their own stage, rates each other.
+/// Visits the pairs of a stage's runs of x that have second derivatives: f(a, b), b not after a.
+/// Coordinates pair with those of another run at their own stage, rates with each other.
 template <typename Entries, typename F>
 void for_each_pair(const Entries& entries, const F& f) {
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -47,8 +47,8 @@ AllAtOnceHessian::AllAtOnceHessian(const TrajectoryProblem& problem, const Input
   lay_out_gains(problem.horizon);
 }
 
-/// By which pairs anything has second derivatives: of coordinates (the residual's, and where
-/// measurements read bodies of two branches), of a control and a rate (a motor's power).
+/// Lists the pairs that have second derivatives: pairs of coordinates (from the residual, and where
+/// measurements read bodies of two branches), and of a control and a rate (a motor's power).
 void AllAtOnceHessian::lay_out_pairs(const Horizon& horizon, const ValueDependence& values) {
   std::vector<std::set<int>> pairs;
   for (const std::vector<int>& others : residual_pattern(horizon.model())) {
@@ -86,7 +86,7 @@ void AllAtOnceHessian::lay_out_pairs(const Horizon& horizon, const ValueDependen
   control_rates_.assign(powers.begin(), powers.end());
 }
 
-/// And of a design variable and a control: a motor's P.
+/// Likewise pairs of a design variable and a control: a motor's P.
 void AllAtOnceHessian::lay_out_gains(const Horizon& horizon) {
   std::set<std::pair<Eigen::Index, int>> gains;
   for (int m = 0; m < static_cast<int>(horizon.model().motors().size()); ++m) {

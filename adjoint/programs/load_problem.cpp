@@ -83,7 +83,7 @@ LoadedProblem make_problem(Model model, const SimulationOptions& simulation,
       {std::move(horizon), make_objective(objective), std::move(inputs)}, objective, {}, {}, {}};
 }
 
-/// Names of the files that a body is made from.
+/// Names of the files that a body uses.
 std::vector<std::string> files_of(const scene::Body& body) {
   std::vector<std::string> names;
   std::optional<std::string> contacts;

@@ -30,7 +30,7 @@ const Eigen::MatrixXd* tangents_of(const Tangents& tangents, ValueField field) {
   }
 }
 
-/// Runs f(0) … f(count − 1) on some threads; what the first of them throws is thrown here.
+/// Runs f(0) … f(count − 1) on some threads; rethrows the first exception.
 void run_side_by_side(int count, int threads, const std::function<void(int)>& f) {
   std::atomic<int> next = 0;
   std::vector<std::exception_ptr> failures(static_cast<std::size_t>(count));
@@ -163,7 +163,7 @@ std::vector<Eigen::Index> Shooting::columns_of(const ValuePlace& place) const {
   return out;
 }
 
-/// A number's derivatives by all that its segment knows.
+/// A number's derivatives with respect to all variables of its segment.
 Eigen::RowVectorXd Shooting::tangent_of(const ValuePlace& place) const {
   const ShootingSegment& segment = segment_of(place.step);
   const Eigen::MatrixXd& all = *tangents_of(segment.tangents(), place.field);
@@ -290,7 +290,7 @@ TrajectoryPartials Shooting::share_of(const ShootingSegment& segment,
   const auto take = [&](const Eigen::MatrixXd& from, Eigen::MatrixXd& to) {
     to = from.middleCols(first, steps + 1);
     if (first > 0) {
-      to.col(0).setZero();  // the segment before has it
+      to.col(0).setZero();  // it belongs to the previous segment
     }
   };
   take(partials.q, out.q);

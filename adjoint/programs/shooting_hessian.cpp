@@ -119,7 +119,7 @@ void Shooting::add_curvature(EntryPlan& entries) const {
   }
 }
 
-/// How the numbers that the terms read bend with x: of each segment, weights being the terms'
+/// The curvature in x of the numbers that the terms read: per segment, weighted by the terms'
 /// partials and the multipliers of continuity.
 void Shooting::put_curvature(double sigma, const Eigen::VectorXd& lambda, EntryPlan& entries) {
   const TrajectoryPartials partials = lagrangian_partials(values_, sigma, lambda);

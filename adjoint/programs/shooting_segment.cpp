@@ -8,7 +8,7 @@
 namespace hbar {
 namespace {
 
-/// Options of a stretch of a horizon: restarts within it are counted from its own start.
+/// Options of a part of a horizon; restarts within it are counted from its own start.
 SimulationOptions options_of_stretch(const Horizon& whole, int first_step, int steps) {
   SimulationOptions out = whole.options();
   out.steps = steps;
@@ -41,7 +41,7 @@ void ShootingSegment::simulate(const Inputs& inputs) {
     values_ = reader_.values(trajectory_);
   } catch (const NumericalFailure& error) {
     failure_ = error.what();
-  } catch (const InvalidInput& error) {  // parameters that no body can have
+  } catch (const InvalidInput& error) {  // parameters that are physically impossible
     failure_ = error.what();
   }
 }

@@ -26,7 +26,7 @@ ValueDependence::ValueDependence(const Horizon& horizon, const InputVariables& h
   }
 }
 
-/// Whether a row may change with a coordinate of a run of x.
+/// Whether a row can depend on a coordinate of a run of x.
 bool ValueDependence::depends(const MeasuredReads& reads, const StageRun& run, int coordinate) {
   return (run.q != 0.0 && holds(reads.q, coordinate)) ||
          (run.qdot != 0.0 && holds(reads.qdot, coordinate));
@@ -72,7 +72,7 @@ void ValueDependence::move_to(const Trajectory& trajectory, const Eigen::MatrixX
   ++point_;
 }
 
-/// Derivatives at a step that hold a row's, which are the ones at `at`.
+/// Derivatives at a step that include those of a row, which are at `at`.
 const ValueDependence::StepDerivatives& ValueDependence::differentiate(int step, int row,
                                                                        Eigen::Index& at) {
   StepDerivatives& out = steps_[static_cast<std::size_t>(step)];

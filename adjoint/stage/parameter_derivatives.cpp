@@ -106,7 +106,7 @@ void add_parameter_gradient(const Applied<S>& applied, const StageResidual<S>& s
 
 namespace {
 
-/// Column of a joint transformation: everything from `first` on moves by D.
+/// Column of a joint transformation: everything below `first` moves by D.
 template <Scalar S>
 void joint_frame_column(const StageResidual<S>& stage, int first, const Vector6<S>& D,
                         const std::vector<int>& rows, Eigen::Ref<VectorX<S>> column) {
@@ -154,7 +154,7 @@ void body_frame_column(const StageResidual<S>& stage, int link, const Vector6<S>
       stage.motion(), [link](int other) { return other == link; }, D, by_frame.psi_dot, column);
 }
 
-/// Columns of one block, but for what contact parameters do to wrenches.
+/// Columns of one block, except for the effect of contact parameters on wrenches.
 template <Scalar S>
 void block_columns(const Applied<S>& applied, const StageResidual<S>& stage,
                    const ParameterBlock& block, double c, Eigen::Ref<MatrixX<S>> columns) {

@@ -16,7 +16,7 @@ std::string_view without_blanks(std::string_view text) {
              : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// Walks over a text cell by cell and knows where it is.
+/// Reads a text cell by cell and keeps track of its position.
 class CsvReader {
  public:
   CsvReader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
@@ -36,7 +36,7 @@ class CsvReader {
   }
 
  private:
-  /// Where the present line's text ends: at \n, at \r\n or with the text.
+  /// Where the current line's text ends: at \n, at \r\n or at the end of the text.
   [[nodiscard]] std::size_t line_end() const {
     const std::size_t found = std::min(text_.find('\n', at_), text_.size());
     return found > at_ && text_[found - 1] == '\r' ? found - 1 : found;
@@ -92,7 +92,7 @@ class CsvReader {
   std::string_view text_;
   const std::string& file_;
   std::size_t at_ = 0;
-  std::size_t begin_ = 0;  // of the present line
+  std::size_t begin_ = 0;  // of the current line
   int line_ = 1;
 };
 

@@ -98,10 +98,10 @@ Eigen::RowVectorXd tangent_row(const Eigen::MatrixXd& block, Eigen::Index rows,
   return block.row(place.step * rows + place.index);
 }
 
-/// How the number at a place moves along each direction.
+/// How the number at a place changes along each direction.
 Eigen::RowVectorXd place_sensitivity(const TrajectoryValues& values, const Tangents& tangents,
                                      const Directions& directions, const ValuePlace& place) {
-  (void)value_at(values, place);  // refuses a place that there is not
+  (void)value_at(values, place);  // refuses a place that does not exist
   const Eigen::Index rows = field_rows(values, place.field);
   switch (place.field) {
     case ValueField::kQ:

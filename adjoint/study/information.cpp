@@ -128,8 +128,8 @@ Information information(const Fit& fit, const InformationOptions& options) {
   const Eigen::MatrixXd weighted = fit.sigma.cwiseInverse().asDiagonal() * fit.sensitivity;
   out.fisher = weighted.transpose() * weighted;
 
-  // Columns of equal length make the answer independent of the parameters' units; one that is mere
-  // rounding beside the others stays short, and so is found silent.
+  // Columns of equal length make the result independent of the parameters' units; one that is only
+  // rounding relative to the others stays short, and so counts as silent.
   const Eigen::VectorXd lengths = (weighted * fit.scale.asDiagonal()).colwise().norm().transpose();
   const double longest = data == 0 ? 0.0 : lengths.maxCoeff();
   Eigen::VectorXd unit = fit.scale;

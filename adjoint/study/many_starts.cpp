@@ -29,14 +29,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// So that the table's first line holds it whole.
+// So that it fits in the table's first line.
 constexpr std::size_t kLongestName = 60;
 
 JobResult failed_job(std::string message) {
   return {.failed = true, .numbers = {}, .status = "failed", .message = std::move(message)};
 }
 
-/// A job's result, or why it cannot stand in the table.
+/// A job's result, or why it cannot be entered in the table.
 JobResult checked_result(JobResult result, const std::vector<std::string>& columns) {
   if (result.failed) {
     return result;
@@ -67,7 +67,8 @@ JobResult result_of(const Job& job, int index, const JobOptions& options) {
   }
 }
 
-/// The child's life: its job, one line into the pipe, and an end that runs nothing of the parent's.
+/// Runs in the child: does its job, writes one line into the pipe, and exits without running any of
+/// the parent's cleanup.
 [[noreturn]] void work(const Job& job, int index, const JobOptions& options, int pipe,
                        [[maybe_unused]] pid_t parent) {
 #ifdef __linux__
@@ -92,7 +93,7 @@ JobResult result_of(const Job& job, int index, const JobOptions& options) {
   ::_exit(0);
 }
 
-/// A process that does one job; ended, if it still runs, when this goes out of scope.
+/// A process that does one job; killed when this goes out of scope, if it still runs.
 class Worker {
  public:
   Worker(const Job& job, int index, const JobOptions& options)
@@ -129,7 +130,7 @@ class Worker {
   [[nodiscard]] bool is_late() const {
     return std::chrono::duration<double>(Clock::now() - start_).count() > options_.time_limit;
   }
-  /// Takes what the process wrote.
+  /// Reads what the process wrote.
   /// @returns whether it has closed its end
   bool listen() {
     std::array<char, 4096> block{};
@@ -174,7 +175,7 @@ class Worker {
   std::string text_;
 };
 
-/// Those at work, and what has ended.
+/// The running processes and the finished results.
 class Crew {
  public:
   Crew(const JobOptions& options, const Job& job, JobReport& report)
@@ -183,7 +184,7 @@ class Crew {
   void start(int index) { workers_.emplace_back(job_, index, options_); }
   [[nodiscard]] int size() const { return static_cast<int>(workers_.size()); }
 
-  /// Waits a moment, and records who has ended or is late.
+  /// Waits a moment, and records jobs that have ended or exceeded their time limit.
   void attend() {
     constexpr int kMoment = 20;  // ms: how late a limit or the stop flag is noticed
     std::vector<pollfd> polled;
@@ -242,7 +243,7 @@ void check_job_options(const JobOptions& options) {
   }
 }
 
-/// What the table already holds.
+/// The results already in the table.
 JobReport earlier_jobs(const JobOptions& options) {
   JobReport report;
   report.results.resize(static_cast<std::size_t>(options.count));

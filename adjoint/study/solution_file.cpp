@@ -28,7 +28,7 @@ std::string finite_number(double number, const std::string& of) {
   return ',' + scene::format_number(number);
 }
 
-/// A solution as it is read: where each name stands, to be told if it is not the program's.
+/// A solution as read, with the location of each name for error messages.
 struct SolutionText {
   Solution solution;
   std::vector<CsvCell> variables;    // name cells

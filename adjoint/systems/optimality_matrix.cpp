@@ -21,7 +21,7 @@ struct KktBlock {
   int controls = 0;   // between its coordinates and its multipliers
 };
 
-/// Where the unknowns of the KKT system stand: stage by stage q, u of a step that begins, μ.
+/// The order of the unknowns of the KKT system: stage by stage q, u of a step that begins there, μ.
 class Places {
  public:
   Places(const Horizon& horizon, const Timeline& timeline, bool with_parameters)
@@ -82,7 +82,7 @@ class Places {
   std::vector<KktBlock> blocks_;
 };
 
-/// E = ∂(what is followed)/∂q̄: the variables of every stage, or its coordinates.
+/// E = ∂(what is tracked)/∂q̄: the variables of every stage, or its coordinates.
 SparseMatrix followed_by_q(const Horizon& horizon, const Trajectory& trajectory) {
   const Model& model = horizon.model();
   const int n = model.dof();

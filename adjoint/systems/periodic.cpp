@@ -71,7 +71,7 @@ struct PeriodicSolver::Workspace final : public solvers::NewtonSystem {
   double mismatch = 0.0;
 };
 
-/// Takes q̄ for the stages' coordinates and what they end with for the initial state.
+/// Sets the stages' coordinates to q̄ and the initial state to their final one.
 void PeriodicSolver::Workspace::close(const Eigen::VectorXd& x) {
   const int last = trajectory.timeline.last_stage();
   trajectory.q.rightCols(last).reshaped() = x;
@@ -93,7 +93,7 @@ const Linearization& PeriodicSolver::Workspace::factorize_here() {
   return system;
 }
 
-/// Simulates some periods, each from the end of the one before.
+/// Simulates some periods, each from the end of the previous one.
 void PeriodicSolver::Workspace::warm_up(const Inputs& guess) {
   Inputs inputs = guess;
   for (int i = 0; i < options.warm_up; ++i) {

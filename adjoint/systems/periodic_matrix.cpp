@@ -9,7 +9,7 @@ namespace {
 using solvers::SparseMatrix;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// ∂q_N/∂q̄ and ∂q̇_N/∂q̄: where stage 0 is meant, the last stage stands for it.
+/// ∂q_N/∂q̄ and ∂q̇_N/∂q̄, with the last stage in place of stage 0.
 struct EndDerivatives {
   SparseMatrix q;     // [dof x m]
   SparseMatrix qdot;  // [dof x m]

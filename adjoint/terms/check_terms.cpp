@@ -34,7 +34,7 @@ struct TermRows {
   std::function<VectorXd(const TrajectoryValues&, Index)> second;  // [count]
 };
 
-/// Numbers that were not written stand out.
+/// NaN, so that numbers that were not written show up.
 VectorXd unwritten(Index count) {
   return VectorXd::Constant(count, std::numeric_limits<double>::quiet_NaN());
 }
@@ -106,7 +106,7 @@ class TermChecker {
     }
   }
 
-  /// Central difference by number i in units of its scale, extrapolated once.
+  /// Central difference with respect to number i in units of its scale, extrapolated once.
   template <typename Function>
   [[nodiscard]] MatrixXd difference(Index i, const Function& f) const {
     const auto central = [&](double step) {

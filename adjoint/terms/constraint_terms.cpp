@@ -14,7 +14,7 @@
 namespace hbar {
 namespace {
 
-/// Collects linear rows, then is a term.
+/// Collects linear rows, then turns them into a term.
 class RowBuilder {
  public:
   /// Adds a row lower ≤ Σ weight · number ≤ upper, unless it bounds nothing.

@@ -67,7 +67,7 @@ std::vector<int> rows_of(const StepSum& sum, const TrajectoryValues& values) {
   return rows;
 }
 
-/// Adds the numbers of a sum that count.
+/// Adds the relevant numbers of a sum.
 void add_summands(const std::string& name, const StepSum& sum, const TrajectoryValues& values,
                   std::vector<Summand>& out) {
   const std::vector<int> rows = rows_of(sum, values);

@@ -10,7 +10,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// How a state passes along an edge: D its first derivative, E the rate's by the coordinates.
+/// How a state passes along an edge: D is its first derivative, E that of the rate with respect to
+/// the coordinates.
 template <typename Weight>
 struct Passage {
   Weight D;

@@ -11,11 +11,11 @@
 namespace hbar {
 namespace {
 
-/// No stage turns a joint farther than this from where its last acceleration would take it, rad.
+/// Largest angle by which a stage may turn a joint away from its prediction, rad.
 constexpr double kLargestTurn = 1.5;
 
 /// Whether a solution is so far from its prediction that it must be another root: with contact, a
-/// stage may have some in which bodies have gone through each other.
+/// stage may have roots in which bodies have passed through each other.
 bool strays(const Model& model, const Eigen::VectorXd& predicted, const Eigen::VectorXd& found) {
   if (model.contacts().empty()) {
     return false;
@@ -64,7 +64,7 @@ Trajectory Rollout::trajectory() && {
   return std::move(trajectory_);
 }
 
-/// A stage as Newton's method sees it: unknown q, with q̇ and q̈ following.
+/// A stage as a system for Newton's method: unknown q, with q̇ and q̈ following.
 class Simulator::StageSystem final : public solvers::NewtonSystem {
  public:
   explicit StageSystem(const Model& model)
@@ -90,7 +90,7 @@ class Simulator::StageSystem final : public solvers::NewtonSystem {
   /// Of the last evaluation.
   [[nodiscard]] const ContactForces<double>& contacts() const { return stage_.contacts(); }
 
-  const Mechanism<double>* mechanism = nullptr;  // of the trajectory that is computed
+  const Mechanism<double>* mechanism = nullptr;  // of the trajectory being computed
   StagePoint<double> point;
   Eigen::VectorXd qdot_past;
   Eigen::VectorXd a_past;
@@ -120,7 +120,7 @@ struct Simulator::Workspace {
   solvers::Newton newton;
   Eigen::VectorXd x;
   Eigen::VectorXd predicted;  // x before Newton's method
-  Eigen::VectorXd last_a;     // of the stage that was solved last
+  Eigen::VectorXd last_a;     // of the stage solved last
 };
 
 Simulator::Simulator(Horizon horizon)
@@ -215,7 +215,7 @@ bool Simulator::solve_stage(Trajectory& trajectory, int stage, RolloutReport& re
   work_->history.gather(trajectory, stage, system.qdot_past, system.a_past, point.start);
   point.rate = row.rate;
   point.u = trajectory.inputs.u.col(row.step);
-  // Predictor: the acceleration of the last stage goes on (zero before there is one).
+  // Predictor: the acceleration of the last stage continues (zero at first).
   const bool has_last = stage > 1;
   work_->x = -system.a_past / row.rate - system.qdot_past;
   if (has_last) {

@@ -57,7 +57,8 @@ Matrix3<S> right_jacobian_inverse(const Vector3<S>& r) {
 
 namespace {
 
-/// Coefficients of J_r x = x − b r × x + g r × (r × x) and their derivatives by s = ‖r‖².
+/// Coefficients of J_r x = x − b r × x + g r × (r × x) and their derivatives with respect to s =
+/// ‖r‖².
 template <Scalar S>
 struct RightJacobianCoefficients {
   S b, b1, b2, g, g1, g2;

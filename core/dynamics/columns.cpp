@@ -91,7 +91,7 @@ void Columns<S>::project(const Tree& tree, const Motion<S>& motion, const Dynami
           weights.q * psi_ddot_.col(c) + weights.v * psi_ddot_by_rate_.col(c) + weights.a * D;
       const Vector6<S> wrench =
           sum<S>(below.I * psi_ddot, below.B * psi_dot, cross_wrench<S>(weights.q * D, below.F));
-      // What B^C leaves of Ψ̇ in the rows below is its angular half.
+      // Only the angular half of Ψ̇ matters for B^C in the rows below.
       Eigen::Matrix<S, 9, 1> below_weights;
       below_weights.template head<6>() = psi_ddot;
       below_weights.template tail<3>() = psi_dot.template head<3>();

@@ -67,7 +67,8 @@ std::span<const Vector6<S>> Pullback<S>::weigh(const Model& model, const Motion<
   return twists_;
 }
 
-/// The subtree's sums are whole: its derivatives, and its share of the parent's.
+/// Called when the subtree's sums are complete: computes its derivatives and adds its part to the
+/// parent's sums.
 template <Scalar S>
 void Pullback<S>::sum_node(const Tree& tree, const Motion<S>& motion, const Dynamics<S>& dynamics,
                            const VectorView<S>& z, int i) {

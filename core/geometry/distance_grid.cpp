@@ -19,7 +19,7 @@ namespace {
 /// Cells beyond the mesh on every side. The spline levels off beyond the last node, so that it is
 /// positive there; the ends' influence on it falls by 3.7 a cell.
 constexpr int kMargin = 3;
-/// Cells from the surface up to which max_error looks.
+/// Distance from the surface, in cells, within which max_error is measured.
 constexpr double kNear = 2.0;
 /// The bytes begin with this, then numbers: the version, the nodes, the mesh's box, the error, the
 /// coefficients and the checksum of all before it.
@@ -67,7 +67,7 @@ double measure_error(const TriangleDistance& exact, const TricubicSpline& spline
     const Eigen::Vector3d x = nodes.point(i, j, k).array() + 0.5 * nodes.spacing;
     const double value = spline.value(x);
     if (std::abs(value) > near + nodes.spacing) {
-      return;  // surely not near: spares a search
+      return;  // certainly not near: saves a search
     }
     const double distance = exact.signed_distance(x, hint);
     if (std::abs(distance) <= near) {

@@ -11,14 +11,15 @@
 namespace hbar {
 namespace {
 
-/// Triangles of a leaf at most: fewer make more boxes to test, more make more triangles.
+/// Largest number of triangles in a leaf: fewer mean more boxes to test, more mean more triangles.
 constexpr int kLeafTriangles = 4;
-/// Boxes that wait while the tree is searched: one a level, and halving 2³¹ triangles takes 31.
+/// Boxes pending while the tree is searched: one per level, and halving 2³¹ triangles takes 31
+/// levels.
 constexpr std::size_t kWaiting = 64;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
-/// The mesh itself if it is closed or beyond mending, else with equal vertices made one.
+/// The mesh itself if it is closed or cannot be repaired, else with equal vertices merged.
 TriangleMesh closed_mesh(const TriangleMesh& mesh) {
   const auto exists = [&](int i) { return i >= 0 && at(i) < mesh.vertices.size(); };
   const bool mendable =

@@ -29,9 +29,9 @@ void check_grid(const GridNodes& nodes, const Eigen::Vector3i& expected, std::si
   }
 }
 
-/// Cubic B-spline coefficients c₋₁ … cₙ with (cᵢ₋₁ + 4 cᵢ + cᵢ₊₁)/6 = fᵢ. No knot at the last node
-/// but one means a fourth difference of c that vanishes there; with the equations of nodes 0, 1 and
-/// 2 that leaves c₁ = f₁ − (f₀ − 2 f₁ + f₂)/6. So does the other end; what lies between is a
+/// Cubic B-spline coefficients c₋₁ … cₙ with (cᵢ₋₁ + 4 cᵢ + cᵢ₊₁)/6 = fᵢ. The not-a-knot condition
+/// at the second node makes the fourth difference of c vanish there; with the equations of nodes 0,
+/// 1 and 2 this gives c₁ = f₁ − (f₀ − 2 f₁ + f₂)/6. The other end is analogous; the rest is a
 /// tridiagonal system, and c₀ and c₋₁ follow from the equations of nodes 1 and 0.
 ///
 /// @param line  fᵢ at i + 1 on entry, cᵢ at i + 1 on return                          [n + 2]
@@ -83,7 +83,8 @@ void interpolate_axis(std::vector<double>& grid, const Eigen::Vector3i& count, i
   }
 }
 
-/// Weights of the four coefficients that reach a coordinate, and of the coordinate's derivatives.
+/// Weights of the four coefficients that contribute at a coordinate, for the value and its
+/// derivatives.
 struct AxisWeights {
   std::array<std::size_t, 4> places;             ///< on the axis, padding counted
   std::array<std::array<double, 4>, 4> weights;  ///< [derivative][coefficient], per spacing

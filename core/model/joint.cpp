@@ -10,7 +10,7 @@ ElementaryMotion rotation(const Vector3d& axis) { return {MotionKind::kRotation,
 ElementaryMotion translation(const Vector3d& axis) { return {MotionKind::kTranslation, axis}; }
 ElementaryMotion exponential() { return {MotionKind::kExponential, Vector3d::Zero()}; }
 
-/// What a joint kind is called and made of, in one place.
+/// Names and elementary motions of a joint kind, in one place.
 struct JointTraits {
   std::string_view type;
   Motions motions;

@@ -8,7 +8,7 @@
 namespace hbar {
 namespace {
 
-/// How far from orthonormal a rotation, and from unit length a normal, may be written.
+/// Tolerance on the orthonormality of a rotation and on the unit length of a normal.
 constexpr double kUnitTolerance = 1e-9;
 
 std::string name_of_measurement(const Measurement& measurement) {

@@ -15,7 +15,7 @@ FrameTwists<S> frame_twists(const Model& model, const Applied<S>& applied, const
   }
   Matrix3<S> J_w;
   if (std::same_as<S, double> && w.isZero(0.0)) {
-    J_w.setIdentity();  // as it mostly is: the frame where the scene put it
+    J_w.setIdentity();  // the usual case: the frame is where the scene put it
   } else {
     J_w = right_jacobian(w);
   }

@@ -5,7 +5,7 @@
 namespace hbar {
 namespace {
 
-/// Covector on a frame's displacement D where the twists that D carries change by V × D besides.
+/// Covector on a frame's displacement D when the twists carried by D also change by V × D.
 template <Scalar S>
 Vector6<S> frame_covector(const Vector6<S>& by_displacement, const Vector6<S>& by_twist,
                           const Vector6<S>& V) {

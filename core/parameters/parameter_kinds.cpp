@@ -26,8 +26,8 @@ RigidTransform<S> displaced(const RigidTransform<double>& nominal, Values<S> val
           nominal.p.cast<S>() + w_t.template tail<3>()};
 }
 
-/// Lets mass, moments and contact points follow the sizes already set. Kinds are applied in order,
-/// so that all of these hold their values at nominal sizes.
+/// Updates mass, moments and contact points to the sizes already set. Kinds are applied in order,
+/// so that all of these hold their values at nominal sizes before.
 template <Scalar S>
 void resize_body(const Body& body, int link, Mechanism<S>& mechanism) {
   const auto& sizes = mechanism.sizes.col(link);
@@ -97,7 +97,7 @@ void apply_number(const Model&, int owner, Values<S> values, Mechanism<S>& out) 
   (out.*kField)[owner] = values.front().value;
 }
 
-// How mass and moments move. A mechanism's are the parameters' times what sizes make of them.
+// How mass and moments change. A mechanism's are the parameters' times factors from the sizes.
 
 template <Scalar S>
 InertiaRate<S> rate_by_mass(const Model&, const Mechanism<S>& mechanism, int link,
@@ -253,7 +253,7 @@ constexpr std::array kTable = {
                      .rows = detail::rows_of_contact,
                      .real = {.apply = apply_contact_coefficients<R>},
                      .dual = {.apply = apply_contact_coefficients<D>}},
-    // The last: it lets mass, moments and points at nominal sizes follow.
+    // The last: it updates mass, moments and points from their values at nominal sizes.
     ParameterKindRow{.kind = kSize,
                      .name = "size",
                      .owner = Owner::kLink,

@@ -15,7 +15,7 @@ bool selects(std::string_view wanted, std::string_view name) {
   return name.starts_with(wanted) && (name.size() == wanted.size() || name[wanted.size()] == '.');
 }
 
-/// Numbers outside what their kinds may take.
+/// Numbers outside the range of their kinds.
 template <Scalar S>
 void require_ranges(const ParameterSet& set, const VectorView<S>& p) {
   for (int i = 0; i < set.size(); ++i) {

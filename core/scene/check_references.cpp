@@ -66,7 +66,7 @@ void check_motors(const Description& description, const Names<Joint>& joints,
 }
 
 /// Whether a body can be the one whose points are tested against another; a ball without points
-/// touches with its deepest one, which a mesh's distance is not made for.
+/// touches with its deepest point, which mesh distances do not support.
 bool has_contact_points(const Body& body, bool against_mesh) {
   if (const auto* ball = std::get_if<SphereBody>(&body.shape)) {
     return !against_mesh || ball->general_contact_resolution;

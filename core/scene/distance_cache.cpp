@@ -13,7 +13,7 @@
 namespace hbar::scene {
 namespace {
 
-/// Counts the ways in which a grid has been made from a mesh: another way, another file.
+/// Version of the way grids are made from meshes: a new version gets a new file.
 constexpr std::uint64_t kRecipe = 1;
 
 std::string hexadecimal(std::uint64_t number) {
@@ -24,7 +24,7 @@ std::string hexadecimal(std::uint64_t number) {
   return digits;
 }
 
-/// The grid kept in a file, or nothing.
+/// The grid cached in a file, or nothing.
 std::shared_ptr<const DistanceField> read_grid(const std::filesystem::path& path) {
   try {
     return std::make_shared<DistanceGrid>(read_text_file(path));

@@ -77,7 +77,7 @@ class SceneReader {
                     "law=\"linear\" is what earlier readers of this format do");
   }
 
-  /// A scene may leave its ground out, but hardly by intention where bodies touch it.
+  /// A scene may omit its ground, but hardly on purpose if bodies touch it.
   void notice_missing_ground() {
     if (description_.ground) {
       return;

@@ -7,7 +7,7 @@ namespace hbar::scene {
 namespace {
 
 /// Relative difference of squared distances that count as equal: compilers round them differently,
-/// and the choice shall not depend on it.
+/// and the choice must not depend on that.
 constexpr double kTie = 1e-10;
 
 /// The vertices that triangles have, in the order of the mesh.

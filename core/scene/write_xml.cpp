@@ -12,7 +12,7 @@
 namespace hbar::scene {
 namespace {
 
-/// Levels of links that are nested; the reader takes more, other elements need some.
+/// Deepest nesting of links; the reader accepts more, and other elements need some.
 constexpr int kDeepestNesting = 40;
 
 std::string escaped(std::string_view text) {

@@ -15,7 +15,7 @@ namespace {
 /// Squared length of a quaternion that counts as one already, so that reading is idempotent.
 constexpr double kUnitSlack = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// Throws unless an element may stand in its parent.
+/// Throws unless an element is allowed in its parent.
 void check_placement(const tinyxml2::XMLElement& xml, std::string_view parent,
                      const ReadContext& context) {
   const std::string place = element_place(context, xml.GetLineNum(), xml.Name());

@@ -1,6 +1,5 @@
-// The hbar command: what a scene is, its trajectory, the gradient of an objective of it, and the
-// proof that the gradient is right; and how linear solvers do on such systems. doc/command.md is
-// its manual.
+// The hbar command: describes a scene, simulates it, computes the gradient of an objective and
+// verifies it, and compares linear solvers on such systems. doc/command.md is its manual.
 
 #include <exception>
 #include <new>

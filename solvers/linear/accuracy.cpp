@@ -82,7 +82,7 @@ Residual residual_of(const SparseMatrix& A, System system, const VectorView<doub
   return result;
 }
 
-/// 0 / 0 is 0, and what is not a number stays visible.
+/// 0 / 0 is 0, and NaN stays visible.
 double quotient(long double error, long double size) {
   return error == 0.0L ? 0.0 : static_cast<double>(error / size);
 }
@@ -138,7 +138,7 @@ Eigen::VectorXd refined_solution(LinearSolver& solver, const SparseMatrix& A,
   Eigen::VectorXd step(b.size());
   double last_step = std::numeric_limits<double>::infinity();
   double largest = 0.0;
-  // A step of 1e-30 is beyond the digits that x has; where x is exact, steps shrink for ever.
+  // A step of 1e-30 is beyond the digits that x has; if x is exact, steps shrink forever.
   while (last_step > 1e-30 * largest) {
     for (std::size_t i = 0; i < x.size(); ++i) {
       residual[i] = {b[static_cast<Eigen::Index>(i)], 0.0};

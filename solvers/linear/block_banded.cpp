@@ -30,7 +30,7 @@ void factorize_panel(MatrixSpan panel, int* swaps) {
       if (best != j) {
         panel.row(j).swap(panel.row(best));
       }
-      // A pivot of zero has zeros below it, and is found when all is done.
+      // A pivot of zero has zeros below it, and is detected at the end.
       if (panel(j, j) != 0.0) {
         panel.col(j).tail(rows - j - 1) /= panel(j, j);
       }
@@ -124,8 +124,8 @@ class BlockBanded final : public LinearSolver {
   double flops_ = 0.0;
 };
 
-/// Blocks as asked for, or of one size: a quarter of the bandwidth keeps the rim of the band, that
-/// blocks make ragged, small against the band, and products of matrices large enough to be fast.
+/// Blocks as requested, or of one size: a quarter of the bandwidth keeps the ragged edge of the
+/// band small relative to the band, and matrix products large enough to be fast.
 void BlockBanded::place_blocks() {
   std::vector<int> sizes = block_sizes_;
   if (sizes.empty()) {
@@ -216,7 +216,7 @@ void BlockBanded::interchange(const Column& column, Solutions X, int first_row) 
   }
 }
 
-/// What the elimination of an earlier block column does to a later one.
+/// Applies the elimination of an earlier block column to a later one.
 void BlockBanded::eliminate(const Column& earlier, const Column& column, Panel panel) {
   interchange<Panel&>(earlier, panel, column.first_row);
   auto U = panel.middleRows(earlier.begin - column.first_row, earlier.size());

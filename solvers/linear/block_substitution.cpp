@@ -138,7 +138,7 @@ void BlockSubstitution::factorize_block(int block) {
   const auto& lu = factors_[b].matrixLU();
   for (int j = 0; j < size; ++j) {
     const double pivot = lu(j, j);
-    // Written so that a pivot that is not a number is found, too.
+    // Written so that NaN pivots are found too.
     if (std::abs(pivot) > kPivotFloor * block_.col(j).lpNorm<Eigen::Infinity>()) {
       continue;
     }
@@ -174,8 +174,8 @@ SparseColumn BlockSubstitution::in_block(int column) const {
           below_[static_cast<std::size_t>(column)] - begin};
 }
 
-/// Each block row's right-hand side less what is known of it is what its diagonal block is solved
-/// with; what that leaves is the row's residual.
+/// Each diagonal block is solved with its row's right-hand side minus the known part; what remains
+/// is the row's residual.
 void BlockSubstitution::substitute(System system, MatrixSpan X, Eigen::MatrixXd* R) {
   const bool forward = system == System::kPlain;
   for (int i = 0; i < block_count(); ++i) {
@@ -259,7 +259,7 @@ void BlockSubstitution::subtract_diagonal(int block, System system, const Matrix
   }
 }
 
-/// Takes what a solved block adds to the rows below it off their right-hand sides.
+/// Subtracts the contribution of a solved block from the right-hand sides of the rows below it.
 void BlockSubstitution::subtract_below(int block, MatrixSpan X) const {
   const Panel& dense = panels_[static_cast<std::size_t>(block)];
   const int first = block_begin(block);
@@ -277,7 +277,8 @@ void BlockSubstitution::subtract_below(int block, MatrixSpan X) const {
   }
 }
 
-/// Takes what the solved rows below add in the transposed system off a block's right-hand side.
+/// Subtracts the contribution of the solved rows below, in the transposed system, from a block's
+/// right-hand side.
 void BlockSubstitution::gather_below(int block, MatrixSpan X) const {
   const Panel& dense = panels_[static_cast<std::size_t>(block)];
   const int first = block_begin(block);

@@ -231,8 +231,8 @@ class Cholmod final : public LinearSolver {
     }
   }
 
-  /// CHOLMOD stops at a pivot of zero or of the wrong sign; one that rounding has kept from zero
-  /// is left to be found here.
+  /// CHOLMOD stops at a pivot that is zero or of the wrong sign; one that is non-zero only by
+  /// rounding is detected here.
   void refuse_unfit_pivots() {
     if (kind_ == Kind::kNormal) {
       measure_rows();

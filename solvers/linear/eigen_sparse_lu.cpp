@@ -37,7 +37,7 @@ struct Amd {
   }
 };
 
-/// Eigen's factors, and what they say of singular matrices.
+/// Eigen's factors, and what they tell about singular matrices.
 template <typename Order, typename Index>
 class Factors final : public Eigen::SparseLU<Eigen::SparseMatrix<double, 0, Index>, Order> {
  public:
@@ -96,7 +96,7 @@ class EigenSparseLu final : public LinearSolver {
     const auto& row_place = lu_.rowsPermutation().indices();
     const auto& column_place = lu_.colsPermutation().indices();
     if (!lu_.is_complete()) {
-      // Only a column of zeros and a want of memory end it early.
+      // Only a column of zeros or lack of memory ends it early.
       if (lu_.lastErrorMessage().find("SINGULAR") == std::string::npos) {
         throw_out_of_memory("factorize");
       }

@@ -155,7 +155,7 @@ void LinearSolver::measure_columns() {
 int LinearSolver::find_small_pivot(std::span<const double> pivots, std::span<const int> columns) {
   measure_columns();
   for (std::size_t k = 0; k < pivots.size(); ++k) {
-    // Written so that a pivot that is not a number is found, too.
+    // Written so that NaN pivots are found too.
     if (!(std::abs(pivots[k]) > kPivotFloor * column_max_[columns[k]])) {
       return static_cast<int>(k);
     }
@@ -227,7 +227,7 @@ void LinearSolver::solve_in_place(System system, MatrixSpan X) {
   }
 }
 
-/// Leaves b − A x in residual_, and returns it scaled; not a number if x is not finite.
+/// Leaves b − A x in residual_, and returns it scaled; NaN if x is not finite.
 double LinearSolver::scaled_residual(System system, const VectorView<double>& b,
                                      const VectorView<double>& x) {
   residual_ = b;

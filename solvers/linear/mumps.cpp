@@ -83,7 +83,7 @@ class Mumps final : public LinearSolver {
     }
     set_controls();
     {
-      const auto lock = suitesparse::lock_metis(Ordering::kMetis);  // MUMPS may choose it
+      const auto lock = suitesparse::lock_metis(Ordering::kMetis);  // MUMPS may choose METIS
       call(kAnalyze);
     }
     if (id_.infog[0] < 0) {
@@ -177,7 +177,7 @@ class Mumps final : public LinearSolver {
     icntl(10) = 0;  // no refinement: LinearSolver has its own
     icntl(24) = 1;  // tell null pivots
     id_.cntl[2] = kPivotFloor;
-    // The diagonal of a definite matrix will do; with 0 MUMPS would not tell null pivots, either.
+    // The diagonal of a definite matrix suffices; with 0 MUMPS would not report null pivots either.
     if (is_definite_) {
       id_.cntl[0] = 1e-10;
     }

@@ -10,7 +10,7 @@
 namespace hbar::solvers {
 namespace {
 
-/// What choose_solver goes by.
+/// What choose_solver decides by.
 struct Shape {
   double entries_per_row = 0.0;
   double band_per_entry = 0.0;       ///< entries of the band, zeros included, for one of the matrix
@@ -46,16 +46,16 @@ Shape shape_of(const SolverOptions& options, const SparseMatrix& A) {
   return shape;
 }
 
-// Measured on the matrices of `hbar corpus`, with the BLAS that a fresh system has
-// (doc/solvers.md). From so many entries per row on, dense blocks overtake one column at a time.
+// Measured on the matrices of `hbar corpus`, with the BLAS of a fresh system (doc/solvers.md).
+// Above this many entries per row, dense blocks are faster than one column at a time.
 constexpr double kManyEntries = 48.0;
-// Up to this many places of the band for one entry, a band of dense blocks is worth its zeros.
+// Up to this many places of the band per entry, a band of dense blocks pays off despite its zeros.
 constexpr double kNarrowBand = 3.0;
-// Up to these sizes, a band of numbers is faster than one of blocks: for H̄, for definite matrices.
+// Up to these sizes, a scalar band is faster than one of blocks: for H̄, for definite matrices.
 constexpr int kTinyBlock = 2;
 constexpr int kSmallBlock = 5;
 
-/// Rules for choose_solver, the first that fits, and whose solver this build has, decides.
+/// Rules for choose_solver: the first that applies and whose solver this build has decides.
 std::vector<std::pair<bool, SolverChoice>> rules(const SolverOptions& options, const Shape& shape) {
   using enum Ordering;
   const bool definite = options.structure == Structure::kDefinite;
@@ -122,7 +122,7 @@ SolverChoice choose_solver(const SolverOptions& options, const SparseMatrix& A) 
     if (entry == available.end()) {
       continue;
     }
-    // Whether a matrix is block triangular is seen, not believed.
+    // Whether a matrix is block triangular is checked, not assumed.
     SolverOptions seen = options;
     if (choice.name == "block_substitution") {
       seen.structure = Structure::kBlockTriangular;

@@ -57,7 +57,7 @@ int method_of(Ordering ordering) {
   if (ordering == Ordering::kMetis) {
     return UMFPACK_ORDERING_METIS;
   }
-  return UMFPACK_ORDERING_AMD;  // AMD or COLAMD, as the strategy has it
+  return UMFPACK_ORDERING_AMD;  // AMD or COLAMD, depending on the strategy
 }
 
 template <typename Index>

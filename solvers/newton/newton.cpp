@@ -37,7 +37,7 @@ double Newton::measure(const Eigen::VectorXd& dx, const Eigen::VectorXd& x, int*
   double length = 0.0;
   for (Eigen::Index i = 0; i < dx.size(); ++i) {
     const double entry = std::abs(dx[i]) / (1.0 + std::abs(x[i]));
-    if (!(entry <= length)) {  // a NaN is the worst of all
+    if (!(entry <= length)) {  // NaN counts as worst
       length = entry;
       *worst = static_cast<int>(i);
       if (std::isnan(entry)) {

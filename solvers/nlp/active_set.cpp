@@ -32,7 +32,7 @@ std::vector<Activity> activities(const Eigen::VectorXd& value, const Eigen::Vect
   return result;
 }
 
-/// Rows of the active constraints by the free variables, transposed.
+/// Rows of the active constraints with respect to the free variables, transposed.
 struct ActiveJacobian {
   std::vector<int> constraints;  // of each column of `transposed`
   std::vector<int> variables;    // of each row

@@ -42,7 +42,7 @@ class Outputs {
   [[nodiscard]] const Eigen::VectorXd& value() const { return value_; }
   [[nodiscard]] Eigen::Index size() const { return value_.size(); }
   [[nodiscard]] Eigen::VectorXd slope(const Eigen::VectorXd& d) const { return derivative_ * d; }
-  /// Largest derivative of an output by a scaled variable.
+  /// Largest derivative of an output with respect to a scaled variable.
   [[nodiscard]] double steepness(Eigen::Index output) const {
     return derivative_.row(output).cwiseProduct(scale_.transpose()).lpNorm<Eigen::Infinity>();
   }
@@ -59,7 +59,7 @@ class Outputs {
         return result;
       }
     } catch (const EvaluationError&) {
-      // Left out: the caller goes on with the other steps.
+      // Skipped: the caller continues with the other steps.
     }
     return std::nullopt;
   }
@@ -123,8 +123,8 @@ void check_differences(Outputs& F, const Eigen::VectorXd& d, const std::string& 
 void check_remainder(Outputs& F, const Eigen::VectorXd& d, const std::string& where,
                      GradientCheck& report) {
   const Eigen::VectorXd slope = F.slope(d);
-  // Each pair of neighbouring steps whose remainders stand clear of rounding gives an order; the
-  // last one counts, being nearest to the limit.
+  // Each pair of neighbouring steps whose remainders are well above rounding gives an order; the
+  // last one counts, being closest to the limit.
   Eigen::VectorXd order =
       Eigen::VectorXd::Constant(F.size(), std::numeric_limits<double>::infinity());
   Eigen::VectorXd previous;

@@ -43,7 +43,7 @@ class Lagrangian {
 
   [[nodiscard]] const Eigen::VectorXd& scale() const { return scale_; }
   [[nodiscard]] Eigen::VectorXd product(const Eigen::VectorXd& d) const { return hessian_ * d; }
-  /// Largest derivative of a gradient's entry by a scaled variable.
+  /// Largest derivative of a gradient's entry with respect to a scaled variable.
   [[nodiscard]] double steepness(Eigen::Index i) const {
     return hessian_.row(i).cwiseProduct(scale_.transpose()).lpNorm<Eigen::Infinity>();
   }
@@ -57,7 +57,7 @@ class Lagrangian {
         return result;
       }
     } catch (const EvaluationError&) {
-      // Left out: the caller goes on with the other steps.
+      // Skipped: the caller continues with the other steps.
     }
     return std::nullopt;
   }
@@ -167,7 +167,7 @@ void check_products(Lagrangian& L, const Eigen::VectorXd& d, const std::string& 
 
 void check_model(Lagrangian& L, const Eigen::VectorXd& d, const std::string& name,
                  HessianCheck& report) {
-  // As for gradients: the last pair of steps whose remainders stand clear of rounding counts.
+  // As for gradients: the last pair of steps whose remainders are well above rounding counts.
   double order = std::numeric_limits<double>::infinity();
   double previous = 0.0;
   double previous_step = 0.0;

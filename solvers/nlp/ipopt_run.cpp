@@ -49,7 +49,7 @@ class ExclusiveRun {
 using Vector = Eigen::Map<const Eigen::VectorXd>;
 using Output = Eigen::Map<Eigen::VectorXd>;
 
-/// What an Nlp looks like to Ipopt: scaled, C arrays, false for failure.
+/// An Nlp as Ipopt sees it: scaled, in C arrays, false for failure.
 class Adapter final : public Ipopt::TNLP {
  public:
   Adapter(Nlp& nlp, const IpoptOptions& options)
@@ -308,7 +308,7 @@ IpoptStatus translate(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
-/// An object that counts its references, as Ipopt wants them.
+/// A reference-counted object, as Ipopt requires.
 template <typename T, typename... Args>
 Ipopt::SmartPtr<T> make_counted(Args&&... args) {
   return new T(std::forward<Args>(args)...);  // NOLINT(hbar-naked-new): the SmartPtr owns it

@@ -24,7 +24,7 @@ struct Destroy {
 };
 using Handle = std::unique_ptr<nlopt_opt_s, Destroy>;
 
-/// One side of a constraint as NLopt wants it: sign (c − bound) ≤ 0, or = 0.
+/// One side of a constraint in NLopt's form: sign (c − bound) ≤ 0, or = 0.
 struct Side {
   Eigen::Index constraint;
   double sign;
@@ -290,7 +290,7 @@ void NloptRun::take_best(Nlp& nlp) {
       point = estimate.point;
       r.stationarity = estimate.stationarity;
     } catch (const EvaluationError&) {
-      // Its gradient cannot be evaluated: how far from stationary it is stays unknown.
+      // Its gradient cannot be evaluated: the stationarity stays unknown.
     }
   }
   point = program_.unscaled(point);

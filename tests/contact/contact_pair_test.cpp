@@ -146,7 +146,7 @@ PairStiffness<double> stiffness(const Scene& scene) {
 }
 
 /// Displaces a body along a world twist D, which carries its twist along, and adds Ψ̇ to that: what
-/// a column of formulation §3 does to everything that it moves.
+/// a displacement column (doc/notation.md) does to everything that it moves.
 void displace(BodyMotion<Dual>& body, const Wrench& D, const Wrench& psi_dot) {
   const Eigen::Matrix3d R = testing::values(body.X_WB.R);
   const Vector3d p = testing::values(body.X_WB.p);

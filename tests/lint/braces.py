@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The body of every if, else, for, while and do stands in braces; `else if` is the one exception."""
+"""Every if, else, for, while and do has a body in braces; `else if` is the one exception."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""What every checker shares: the files, code without comments and strings, and the report.
+"""Shared by all checkers: the files, code without comments and strings, and the report.
 
 A checker is one file with one idea: a function `check(root, files)` that yields Findings, handed to
 `lint.main`. `--planted` runs it on tests/planted/NAME instead, where it must report exactly the
@@ -112,7 +112,7 @@ def _convict(name, check):
 def main(name, check, subject):
     """Runs check over the repository, or over what is planted; subject picks the files counted."""
     parser = argparse.ArgumentParser(prog=name)
-    parser.add_argument("--planted", action="store_true", help="prove that planted errors are found")
+    parser.add_argument("--planted", action="store_true", help="verify that planted errors are found")
     parser.add_argument("--root", type=Path, default=REPOSITORY)
     options = parser.parse_args()
     try:

@@ -1,8 +1,8 @@
 #!/bin/sh
 # Runs every checker: tests/lint/run.sh [--planted]
 #
-# One line a checker, `name: ok (N files)`, or its findings as `file:line: rule: text`; exits with 1
-# if there is one. --planted runs each over what is planted for it in tests/planted, instead.
+# Prints one line per checker, `name: ok (N files)`, or its findings as `file:line: rule: text`; exits
+# with 1 if there are any. --planted runs each on the violations planted for it in tests/planted.
 cd "$(dirname "$0")" || exit 2
 failed=0
 for checker in *.py; do

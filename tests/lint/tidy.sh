@@ -2,7 +2,7 @@
 # clang-tidy 14 on the sources that differ from a base: tests/lint/tidy.sh [BASE [BUILD]]
 #
 # BASE is a commit, by default origin/main or else the last one; BUILD a configured build folder, by
-# default build/release. A file takes 10 to 20 s, so this is no part of tests/run.sh.
+# default build/release. A file takes 10 to 20 s, so this is not part of tests/run.sh.
 cd "$(dirname "$0")/../.." || exit 2
 base=${1:-}
 build=${2:-build/release}

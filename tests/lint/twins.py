@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Every source of the library has a twin test, and every test asserts something.
 
-FLOOR/name.cpp is tested by tests/FLOOR/name_test.cpp, or by the file that COVERED names with its
+FOLDER/name.cpp is tested by tests/FOLDER/name_test.cpp, or by the file that COVERED names with its
 reason.
 """
 
@@ -29,8 +29,8 @@ def body(text, at):
 def check(root, files):
     present = set(files)
     for file in lint.cpp(files, lint.LIBRARY, (".cpp",)):
-        floor, name = file.rsplit("/", 1)
-        twin = f"tests/{floor}/{name[:-4]}_test.cpp"
+        folder, name = file.rsplit("/", 1)
+        twin = f"tests/{folder}/{name[:-4]}_test.cpp"
         covering = COVERED.get(file, (twin,))[0]
         if covering not in present:
             yield lint.Finding(file, 1, "twin", f"{covering} does not exist")

@@ -1,4 +1,5 @@
-/// MuJoCo as a witness: mass matrices, bias forces and inverse dynamics of the same trees.
+/// MuJoCo as an independent reference: mass matrices, bias forces and inverse dynamics of the same
+/// trees.
 
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>

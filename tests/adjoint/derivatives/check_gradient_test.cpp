@@ -28,7 +28,7 @@ TEST_P(CheckOfEveryIntegrator, PassesAcrossAChangeOfChart) {
   EXPECT_TRUE(report.passed()) << report.table();
 }
 
-TEST_P(CheckOfEveryIntegrator, ConvictsAPlantedErrorOfOnePartInTenToTheFive) {
+TEST_P(CheckOfEveryIntegrator, DetectsAPlantedErrorOfOnePartInTenToTheFive) {
   Problem problem = small_problem(GetParam());
   problem.objective = Objective(user_term(
       "planted",

@@ -1,5 +1,5 @@
-// Gradients of simulations with contact: proved by check_gradient where points touch, leave, stick
-// and slide, at rest and at grazing.
+// Gradients of simulations with contact, verified by check_gradient where points touch, leave,
+// stick and slide, at rest and at grazing contact.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 using testing::contact_problem;
 using testing::ContactChoice;
 
-/// How often a contact of the problem touches anew, and leaves; steps at which points stick, slide.
+/// How often a contact of the problem is made and broken; steps at which points stick, slide.
 struct Events {
   int makes = 0;
   int breaks = 0;
@@ -45,7 +45,7 @@ Events events_of(const Problem& problem) {
 
 /// Every class passes, and nearly every one has room for an order on its own smooth piece: the next
 /// point to touch, leave, stick or slide may be so near that differences alone fit in.
-void expect_proof(const Problem& problem, const GradientCheckOptions& options) {
+void expect_verified(const Problem& problem, const GradientCheckOptions& options) {
   const GradientCheckReport report = check_gradient(problem, options);
   EXPECT_TRUE(report.passed()) << report.table();
   EXPECT_EQ(report.rows.size(), parameter_kinds().size() + 3U) << report.table();
@@ -64,28 +64,28 @@ TEST_P(ContactGradientOfEveryIntegrator, PassesInEveryClassWhilePointsTouchLeave
   EXPECT_GE(events.breaks, 2);
   EXPECT_GE(events.sticking, 20);
   EXPECT_GE(events.sliding, 10);
-  expect_proof(problem, {.directions = 2});
+  expect_verified(problem, {.directions = 2});
 }
 
 TEST(ContactGradient, PassesOverTwoHundredSteps) {
   Problem problem = contact_problem("bdf1", 0.005, 200);
-  expect_proof(problem, {.directions = 1});
+  expect_verified(problem, {.directions = 1});
 }
 
 TEST_P(ContactGradientOfEveryIntegrator, PassesWithSmoothFriction) {
   Problem problem = contact_problem(GetParam(), 0.01, 40, {.friction = FrictionLaw::kSmooth});
-  expect_proof(problem, {.directions = 1, .seed = 2});
+  expect_verified(problem, {.directions = 1, .seed = 2});
 }
 
 TEST_P(ContactGradientOfEveryIntegrator, PassesWhereTheOtherBodyReactsAtItsSurface) {
   Problem problem = contact_problem(GetParam(), 0.01, 40, {.reaction = Reaction::kSurface});
-  expect_proof(problem, {.directions = 1});
+  expect_verified(problem, {.directions = 1});
 }
 
 TEST_P(ContactGradientOfEveryIntegrator, PassesForATactileObjective) {
   Problem problem = contact_problem(GetParam(), 0.01, 40);
   problem.objective = Objective(squared_tactile());
-  expect_proof(problem, {.directions = 1});
+  expect_verified(problem, {.directions = 1});
 }
 
 TEST_P(ContactGradientOfEveryIntegrator, IsThatOfTheAssembledAdjoint) {

@@ -57,7 +57,7 @@ TEST(CheckDesignMap, ConfirmsARightHessian) {
   EXPECT_NEAR(check.hessian_slope, 2.0, 0.1);
 }
 
-TEST(CheckDesignMap, ConvictsAWrongHessian) {
+TEST(CheckDesignMap, DetectsAWrongHessian) {
   const CurvedProducts map(1e-4);
   const DesignMapCheck check = check_design_map(map, map.variables().start);
   EXPECT_GT(check.hessian_gap, 1e-6);
@@ -80,7 +80,7 @@ TEST(CheckDesignMap, ConfirmsARightJacobian) {
   EXPECT_NEAR(check.slope, 2.0, 0.1);
 }
 
-TEST(CheckDesignMap, ConvictsAnErrorOfOnePartInAHundredThousand) {
+TEST(CheckDesignMap, DetectsAnErrorOfOnePartInAHundredThousand) {
   const Products map(1e-5);
   const DesignMapCheck check = check_design_map(map, map.variables().start);
   EXPECT_GT(check.gap, 1e-6);

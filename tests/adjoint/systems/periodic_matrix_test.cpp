@@ -54,7 +54,7 @@ void expect_derivative(Problem problem) {
   }
 }
 
-TEST_P(PeriodicMatrixOfEveryIntegrator, IsTheDerivativeOfTheClosedResidual) {
+TEST_P(PeriodicMatrixOfEveryIntegrator, IsTheDerivativeOfThePeriodicResidual) {
   expect_derivative(driven_pendulum(GetParam(), 12));
   expect_derivative(small_problem(GetParam()));
 }

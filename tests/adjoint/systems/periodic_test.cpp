@@ -28,7 +28,7 @@ using testing::unflatten;
 
 class PeriodicOfEveryIntegrator : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(PeriodicOfEveryIntegrator, ClosesAndIsASimulation) {
+TEST_P(PeriodicOfEveryIntegrator, IsAPeriodicSimulation) {
   Problem problem = driven_pendulum(GetParam(), 25);
   const PeriodicOrbit orbit = solve_periodic(problem.horizon, problem.inputs);
   const Trajectory& found = orbit.trajectory;
@@ -235,7 +235,7 @@ TEST(Periodic, FindsARotationThatAdvances) {
 }
 
 TEST(Periodic, NamesTheCoordinateThatNothingHolds) {
-  // Free to stand anywhere: every position closes.
+  // Free to stand anywhere: every position gives a periodic orbit.
   ModelBuilder builder("free slider");
   Joint joint{.name = "slide", .kind = PrismaticJoint{{0.0, 0.0, 1.0}}, .damping = 1.0};
   builder.add_link(

@@ -68,7 +68,7 @@ TEST_F(CheckTerms, ConfirmsWhatIsRight) {
   }
 }
 
-TEST_F(CheckTerms, ConvictsAPartialThatIsWrong) {
+TEST_F(CheckTerms, DetectsAPartialThatIsWrong) {
   for (const TermCheck& check : {check_objective_term(*faulty_term(1e-4, 0.0), values_),
                                  check_constraint_term(*faulty_constraint(1e-4, 0.0), values_)}) {
     EXPECT_FALSE(check.passed());
@@ -78,7 +78,7 @@ TEST_F(CheckTerms, ConvictsAPartialThatIsWrong) {
   EXPECT_LT(check_objective_term(*faulty_term(0.5, 0.0), values_).slope, 1.5);
 }
 
-TEST_F(CheckTerms, ConvictsASecondPartialThatIsWrong) {
+TEST_F(CheckTerms, DetectsASecondPartialThatIsWrong) {
   for (const TermCheck& check : {check_objective_term(*faulty_term(0.0, 1e-4), values_),
                                  check_constraint_term(*faulty_constraint(0.0, 1e-4), values_)}) {
     EXPECT_FALSE(check.passed());
@@ -91,7 +91,7 @@ TEST_F(CheckTerms, ConvictsASecondPartialThatIsWrong) {
   EXPECT_LT(check_constraint_term(*faulty_constraint(0.0, 0.5), values_).second_slope, 2.5);
 }
 
-TEST_F(CheckTerms, ConvictsAPairThatIsMissingOrThereTwice) {
+TEST_F(CheckTerms, DetectsAPairThatIsMissingOrThereTwice) {
   const TermCheck missing =
       check_objective_term(*faulty_term(0.0, 0.0, {{0, kTorque, kTorque}}), values_);
   EXPECT_FALSE(missing.passed());
@@ -103,7 +103,7 @@ TEST_F(CheckTerms, ConvictsAPairThatIsMissingOrThereTwice) {
   EXPECT_FALSE(twice.passed());
 }
 
-TEST_F(CheckTerms, ConvictsNumbersThatAreNotWritten) {
+TEST_F(CheckTerms, DetectsNumbersThatAreNotWritten) {
   const ConstraintRows rows{{"row"}, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)};
   const auto nothing = [](const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd>) {};
   const auto zero = [](const TrajectoryValues&, Eigen::Ref<Eigen::VectorXd> c) { c[0] = 0.0; };
