@@ -15,7 +15,7 @@ class App;
 
 namespace hbar::example {
 
-/// What every optimisation example can be asked on its command line.
+/// The command-line options that every optimisation example has.
 struct OptimiseArguments {
   std::filesystem::path out;  ///< folder for the results; it must exist when optimise is called
   std::string formulation = "all-at-once";
@@ -27,19 +27,19 @@ struct OptimiseArguments {
 };
 
 /// --out, --formulation, --hessian, --resume, --max-iterations, --segments, --check-derivatives,
-/// with what `arguments` holds as defaults.
+/// with the values of `arguments` as defaults.
 void add_options(CLI::App& app, OptimiseArguments& arguments);
 
 /// "exact", "gauss-newton", "limited-memory".
 [[nodiscard]] std::string_view name_of(solvers::HessianKind kind);
-/// @throws InvalidInput naming the kinds there are
+/// @throws InvalidInput listing the known kinds
 [[nodiscard]] solvers::HessianKind find_hessian(std::string_view name);
 
-/// The formulation and segments that were asked for.
-/// @throws InvalidInput naming the formulations there are
+/// The requested formulation and segments.
+/// @throws InvalidInput listing the known formulations
 [[nodiscard]] TranscriptionOptions transcription_options(const OptimiseArguments& arguments);
 
-/// What optimise reached.
+/// The result of optimise.
 struct Optimised {
   solvers::IpoptResult result;
   std::vector<solvers::IterationInfo> iterations;
@@ -47,16 +47,16 @@ struct Optimised {
   ExitCode code = ExitCode::kNotConverged;
 };
 
-/// Solves with Ipopt, shows each iterate, keeps what was reached and says in words what it is like.
+/// Solves with Ipopt, shows each iterate, saves the result and describes it in words.
 ///
 /// The first SIGINT stops it with its best point. Into the folder arguments.out it writes
 /// solution.csv (which --resume takes), iterations.csv and trajectory.csv, converged or not.
 ///
-/// @param program    also says where to begin, unless there is a solution to resume
+/// @param program    also supplies the start, unless there is a solution to resume
 /// @param arguments  see there
 /// @param options    of Ipopt; hessian, max_iterations, stop and on_iteration are set here, and
 ///                   warm_start if there is a solution to resume
-/// @throws InvalidInput if the solution to resume is another program's, or a name is not known
+/// @throws InvalidInput if the solution to resume belongs to another program, or a name is unknown
 /// @throws NumericalFailure if arguments.check_derivatives and a derivative is wrong
 /// @throws IoError if a file or standard output cannot be written
 [[nodiscard]] Optimised optimise(Transcription& program, const OptimiseArguments& arguments,

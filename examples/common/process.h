@@ -7,7 +7,7 @@
 
 namespace hbar::example {
 
-/// What the optimisation examples exit with.
+/// Exit codes of the optimisation examples.
 enum class ExitCode {
   kOk = 0,
   kUsage = 2,
@@ -18,8 +18,8 @@ enum class ExitCode {
   kInterrupted = 130
 };
 
-/// Closed standard streams cannot be taken for files; the first SIGINT sets stop_flag(), the second
-/// ends the process at once.
+/// Keeps closed standard streams from being reused for files; the first SIGINT sets stop_flag(),
+/// the second ends the process at once.
 void prepare_process();
 
 /// Set by the first SIGINT.
@@ -29,8 +29,8 @@ void prepare_process();
 /// @throws IoError if that fails
 void print(const std::string& text);
 
-/// What `run` returns; what it throws is said in one line on standard error that begins with the
-/// program's name, and becomes an exit code.
+/// Returns what `run` returns; an exception becomes one line on standard error that begins with the
+/// program's name, and an exit code.
 [[nodiscard]] int guarded(std::string_view program, const std::function<ExitCode()>& run);
 
 }  // namespace hbar::example

@@ -8,7 +8,7 @@
 
 namespace hbar::example {
 
-/// One iterate on one line of at most 80 characters, without a line's end.
+/// One iterate on one line of at most 80 characters, without the line end.
 [[nodiscard]] std::string progress_line(const solvers::IterationInfo& info);
 
 /// The heading of progress_line's columns.
@@ -20,7 +20,7 @@ class Progress {
   Progress();
   void show(const solvers::IterationInfo& info);
   void end() const;
-  /// All that were shown.
+  /// All iterates shown.
   [[nodiscard]] const std::vector<solvers::IterationInfo>& iterations() const {
     return iterations_;
   }
@@ -33,7 +33,7 @@ class Progress {
 /// A row per iterate.
 [[nodiscard]] std::string iterations_csv(const std::vector<solvers::IterationInfo>& iterations);
 
-/// Makes the folder at once, so that a wrong name is known before the work.
+/// Makes the folder at once, so that a wrong name is detected before the work.
 /// @throws IoError if it cannot be made
 void make_folder(const std::filesystem::path& folder);
 

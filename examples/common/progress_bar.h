@@ -18,10 +18,10 @@ class ProgressBar {
   ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
-  /// Takes the line away.
+  /// Removes the line.
   ~ProgressBar();
 
-  /// @param next  what is done next
+  /// @param next  the next task
   void show(std::size_t done, std::size_t total, const std::string& next);
 
  private:

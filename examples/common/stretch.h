@@ -21,19 +21,19 @@ struct FreeLength {
   double scale = 0.0;  ///< typical change; 0: see DesignVariable
 };
 
-/// The parameters that lengths decide: a length l stretches its capsules (and with them the contact
-/// points, the masses and the moments), moves the bodies by half and the next joints by all of the
-/// change.
+/// The parameters that lengths determine: a length l stretches its capsules (and with them the
+/// contact points, the masses and the moments), moves the bodies by half and the next joints by all
+/// of the change.
 [[nodiscard]] std::vector<std::string> stretched_parameters(const Model& model,
                                                             const std::vector<FreeLength>& lengths);
 
-/// Lengths onto the parameters of a set that holds at least stretched_parameters. Affine.
+/// Maps lengths to the parameters of a set that contains at least stretched_parameters. Affine.
 ///
 /// @param base   p at the scene's lengths                                       [parameters]
 /// @param share  how much shorter or longer than the scene's a length may get, 0 … 1
 /// @param start  where an optimisation begins, and if share is 0, stays; empty: the scene's
 ///               lengths                                                        [lengths]
-/// @throws InvalidInput if a body is no capsule, or the segments of a length differ
+/// @throws InvalidInput if a body is not a capsule, or the segments of a length differ
 [[nodiscard]] DesignMapPointer stretch_map(const Model& model, const ParameterSet& set,
                                            const Eigen::VectorXd& base,
                                            const std::vector<FreeLength>& lengths, double share,

@@ -20,18 +20,19 @@ struct Phalanx {
   double density = 0.0;    ///< kg/m³
 };
 
-/// The phalanges of examples/scenes/finger.xml as the scene has them.
+/// The phalanges as given in examples/scenes/finger.xml.
 /// @throws InvalidInput if the model has no such bodies, or a body is not such a cuboid
 [[nodiscard]] std::array<Phalanx, 3> phalanges(const Model& model);
 
-/// What a phalanx's size decides: where the next joint and its own body sit, its mass and moments.
+/// The parameters that a phalanx's size determines: the places of the next joint and of its own
+/// body, its mass and moments.
 ///
 /// @param payload  the mass at the tip is among them
 [[nodiscard]] ParameterSet finger_parameters(const Model& model, bool payload = false);
 
-/// Lengths and widths of the phalanges onto finger_parameters: d = (3 lengths, 3 widths).
+/// Maps lengths and widths of the phalanges to finger_parameters: d = (3 lengths, 3 widths).
 ///
-/// @param payload  kg at the tip, a seventh variable that its bounds hold; none unless the tip's
+/// @param payload  kg at the tip, a seventh variable fixed by its bounds; none unless the tip's
 ///                 mass is in the set
 [[nodiscard]] DesignMapPointer finger_map(const std::array<Phalanx, 3>& phalanges,
                                           const ParameterSet& set,

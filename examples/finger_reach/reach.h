@@ -10,13 +10,13 @@
 
 namespace hbar::finger_reach {
 
-/// Where the tip has to be, and when.
+/// Where the tip must be, and when.
 struct Target {
   int step = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m [3]
 };
 
-/// The co-design problem and what a report needs to know of it.
+/// The co-design problem and what a report needs to know about it.
 struct Reach {
   std::array<Phalanx, 3> phalanges;
   std::vector<Target> targets;
@@ -36,23 +36,23 @@ struct ReachOptions {
   int steps = 600;  ///< of the 3 s, a multiple of 60; coarse ones for derivatives: 12, 24, 36, 48
   int blocks = kBlocks;  ///< of constant torque; the last may be shorter
   TranscriptionOptions transcription = {};
-  /// In each of them BDF2 starts anew, whatever the formulation; multiple shooting has no other
-  /// way.
+  /// BDF2 restarts in each of them, in every formulation; multiple shooting cannot avoid it.
   int segments = 1;
   double effort_weight = 1.0;  ///< of ½ ∫ ‖u‖² dt
   double mass_weight = 0.0;    ///< of the phalanges' mass, per 100 g
-  /// Set: kg added to the tip, as a variable whose bounds leave it no room. It does not count for
-  /// the mass limit.
+  /// If set: kg added to the tip, as a variable fixed by its bounds. It does not count towards the
+  /// mass limit.
   std::optional<double> payload = {};
 };
 
-/// Sets up the problem: least effort ½ ∫ ‖u‖² dt, u being shares of the motors' greatest torques.
+/// Sets up the problem: least effort ½ ∫ ‖u‖² dt, with u as fractions of the motors' largest
+/// torques.
 ///
 /// @param scene  examples/scenes/finger.xml or one like it
-/// @throws IoError, InvalidInput  as read_scene, or if the scene is no such finger
+/// @throws IoError, InvalidInput  as read_scene, or if the scene is not such a finger
 [[nodiscard]] Reach make_reach(const std::filesystem::path& scene, const ReachOptions& options);
 
-/// How Ipopt is asked to solve it: to 1e-6.
+/// Options for Ipopt: solves to 1e-6.
 [[nodiscard]] solvers::IpoptOptions ipopt_options(int max_iterations = 200);
 
 /// Distance of the tip to each target, m.                                             [targets]

@@ -8,7 +8,7 @@
 
 namespace hbar::finger_reach {
 
-/// What a run leaves behind.
+/// The result of a run.
 struct Outcome {
   Eigen::VectorXd start;         ///< x before
   double start_objective = 0.0;  ///< effort before
@@ -22,7 +22,7 @@ struct Outcome {
 /// Mass of the phalanges, kg.
 [[nodiscard]] double finger_mass(const Reach& reach, const Eigen::VectorXd& x);
 
-/// The summary for a person to read.
+/// A readable summary.
 [[nodiscard]] std::string summary(const Reach& reach, const Outcome& outcome);
 
 /// Everything but the trajectory, numbers at full precision.

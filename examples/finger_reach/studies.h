@@ -19,10 +19,10 @@ struct Way {
   Eigen::VectorXd head;  ///< design and controls, which every formulation has
 };
 
-/// Solves by every formulation and every Hessian from the same start, with BDF2 starting anew in
-/// each segment whatever the formulation, so that all of them have the same optimum.
+/// Solves with every formulation and every Hessian from the same start, with BDF2 restarting in
+/// each segment in every formulation, so that all of them have the same optimum.
 ///
-/// @param arguments  its segments and max_iterations count; prints a line per way
+/// @param arguments  its segments and max_iterations are used; prints a line per way
 [[nodiscard]] std::vector<Way> solve_every_way(const std::filesystem::path& scene, int steps,
                                                const example::OptimiseArguments& arguments);
 
@@ -42,10 +42,10 @@ struct FrontPoint {
 [[nodiscard]] std::string front_csv(const std::vector<FrontPoint>& front);
 [[nodiscard]] std::string front_table(const std::vector<FrontPoint>& front);
 
-/// How the optimum answers what is given: effort and design by a payload at the tip, effort by the
-/// mass limit.
+/// Sensitivity of the optimum to given values: of effort and design to a payload at the tip, of
+/// effort to the mass limit.
 ///
-/// @param reach    with a payload, if only of nothing
+/// @param reach    with a payload, which may be 0
 /// @param optimum  of the exact Hessian's program, converged
 /// @throws NumericalFailure as sensitivity_of_optimum
 [[nodiscard]] std::string sensitivity_table(const Reach& reach,

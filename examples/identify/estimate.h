@@ -13,16 +13,16 @@
 namespace hbar::identify {
 
 /// The fit as a nonlinear program: minimise half of χ² over the unknowns. The controls are
-/// variables whose bounds leave them no room.
+/// variables fixed by their bounds.
 ///
 /// @param options  multiple shooting has the rig's own motion if it has the rig's segments
 [[nodiscard]] std::unique_ptr<Transcription> misfit_program(
     const Rig& rig, const Recording& recording, const TranscriptionOptions& options = {});
 
-/// How Ipopt is asked to fit: to 1e-6, with the number of data as the objective's size.
+/// Options for Ipopt: fits to 1e-6, with the number of data as the objective's size.
 [[nodiscard]] solvers::IpoptOptions fit_options(const Recording& recording);
 
-/// What the data tell of the unknowns at x: covariance and 95 % intervals by the Fisher
+/// What the data tell about the unknowns at x: covariance and 95 % intervals from the Fisher
 /// information.
 ///
 /// @throws EvaluationError if x cannot be simulated
@@ -45,15 +45,15 @@ struct Way {
 /// the same start.
 [[nodiscard]] std::vector<Way> every_way(const Rig& rig, const Recording& recording);
 
-/// Fits a recording per job, whose errors are the job's own, and stores the estimate and the
-/// standard deviation of each unknown, and χ².
+/// Fits one recording per job, each with its own errors, and stores the estimate and the standard
+/// deviation of each unknown, and χ².
 ///
 /// @param options  its columns are set here
 /// @throws as run_jobs
 [[nodiscard]] study::JobReport repeat_fits(const Rig& rig, const Sigmas& sigmas,
                                            study::JobOptions options);
 
-/// What many fits tell of intervals.
+/// What many fits tell about the intervals.
 struct Coverage {
   int fits = 0;               ///< that converged
   Eigen::VectorXd bias;       ///< mean estimate − truth                                   [d]

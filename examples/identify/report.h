@@ -8,8 +8,8 @@
 namespace hbar::identify {
 
 /// A line per unknown: the truth (if it is known), start, estimate, standard deviation, interval
-/// and whether it covers the truth; then the correlations and χ². Where the data leave a direction
-/// unknown, that in words instead.
+/// and whether it covers the truth; then the correlations and χ². If the data leave a direction
+/// undetermined, says so in words instead.
 ///
 /// @param truth  of the unknowns; empty: not known                                        [d]
 [[nodiscard]] std::string estimate_table(const study::Information& known,

@@ -13,13 +13,13 @@
 
 namespace hbar::identify {
 
-/// The parameters that move with unknowns, which are parameters by their names. A body's moments of
+/// The parameters that depend on the unknowns, which are named parameters. A body's moments of
 /// inertia grow with its mass, so that "body.rod.mass" stands for a density.
-/// @throws InvalidInput if a name is no parameter's, with the nearest that is
+/// @throws InvalidInput for an unknown parameter, suggesting the nearest one
 [[nodiscard]] ParameterSet unknown_parameters(const Model& model,
                                               const std::vector<std::string>& unknowns);
 
-/// Unknowns onto unknown_parameters. Linear.
+/// Maps unknowns to unknown_parameters. Linear.
 ///
 /// @param start  factor > 0 of each unknown's value in the model, where a fit begins    [d]
 /// @throws InvalidInput if an unknown is not positive in the model
@@ -39,7 +39,7 @@ using Sigmas = std::map<std::string, double>;
 struct RigOptions {
   std::filesystem::path scene;
   int steps = 200;          ///< of 10 ms
-  int segments = 1;         ///< in each the integrator starts anew, as multiple shooting asks
+  int segments = 1;         ///< the integrator restarts in each, as in multiple shooting
   bool sliding = true;      ///< the shoe is pressed down now and then; else it hovers all the time
   bool wrong_start = true;  ///< a fit begins far from the scene's values; else there
   std::vector<std::string> unknowns = default_unknowns();
@@ -54,7 +54,7 @@ struct Rig {
   Eigen::VectorXd q0;       ///< known, at rest                                              [dof]
 };
 
-/// @throws IoError, InvalidInput  as read_scene, or if the scene is no such rig
+/// @throws IoError, InvalidInput  as read_scene, or if the scene is not such a rig
 [[nodiscard]] Rig make_rig(const RigOptions& options);
 
 /// A motion of the rig, simulated with the scene's own values, as a table: the coordinates that
@@ -65,14 +65,14 @@ struct Rig {
 [[nodiscard]] std::string recorded_csv(const Rig& rig, const Sigmas& sigmas,
                                        std::mt19937_64& random);
 
-/// What was measured, and the controls that acted.
+/// The measured data, and the controls that acted.
 struct Recording {
   study::TrajectoryData data;  ///< without controls
   Eigen::VectorXd sigma;       ///< of each datum                                        [data]
   Eigen::MatrixXd u;           ///< those in the table; the rig's where it has none [controls x N]
 };
 
-/// Reads such a table, or one that somebody measured.
+/// Reads such a table, or a measured one.
 ///
 /// @param file  its name for messages
 /// @throws InvalidInput as read_trajectory_csv, or naming a column without σ, or a control that is

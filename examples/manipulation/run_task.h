@@ -6,14 +6,14 @@
 
 namespace hbar::manipulation {
 
-/// How an optimisation of a task is done; tests ask for less.
+/// Options for optimising a task; tests do less.
 struct TaskOptions {
   int max_iterations = 100;  ///< all stages of the continuation together
   std::function<void(const solvers::IterationInfo&)> on_iteration;  ///< may be empty
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// What came of a task.
+/// The result of a task.
 struct TaskResult {
   std::unique_ptr<Transcription> problem;  ///< of the last stage
   solvers::IpoptResult last;               ///< of the last stage

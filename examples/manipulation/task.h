@@ -10,7 +10,7 @@
 
 namespace hbar::manipulation {
 
-/// Where a coordinate shall be when time is up.
+/// Where a coordinate must be at the end.
 struct Goal {
   std::string coordinate;  ///< name, as Model::coordinate_name gives it
   double target = 0.0;     ///< rad or length
@@ -24,24 +24,24 @@ struct WayPoint {
   Eigen::VectorXd controls;  ///<                                                      [controls]
 };
 
-/// Something to do with the hands: a scene whose motors go to positions, where it starts, what
-/// shall be reached, and a first guess that need not reach it.
+/// A manipulation task: a scene with position motors, its start, its goals, and a first guess that
+/// need not reach them.
 struct Task {
   std::string name;   ///< of the program
-  std::string title;  ///< one line for people
+  std::string title;  ///< one line of text
   std::filesystem::path scene;
   double duration = 1.5;  ///< s
   int steps = 300;
   int hold = 10;                                      ///< steps during which a control stays
-  std::vector<std::pair<std::string, double>> start;  ///< coordinates that do not start at 0
+  std::vector<std::pair<std::string, double>> start;  ///< coordinates with a start other than 0
   std::vector<WayPoint> guess;
   std::vector<Goal> goals;
   double path_begin = 0.1;  ///< share of the horizon at which goal coordinates set out
-  double path_end = 0.8;    ///< share of the horizon at which they shall have arrived
+  double path_end = 0.8;    ///< share of the horizon at which they must have arrived
   std::vector<example::FreeLength> lengths;  ///< of phalanges
   double length_share = 0.3;                 ///< how much shorter or longer they may get, < 1
-  double velocity_weight = 0.0;   ///< of ½ ∫ ‖q̇‖² dt: slow motions meet fewer surprises
-  double rest_weight = 0.0;       ///< of ½ ‖q̇‖² at the end
+  double velocity_weight = 0.0;              ///< of ½ ∫ ‖q̇‖² dt: favours slow motions
+  double rest_weight = 0.0;                  ///< of ½ ‖q̇‖² at the end
   Eigen::VectorXd control_scale;  ///< typical size of a change                      [controls]
   Eigen::VectorXd control_bound;  ///< |control| ≤                                   [controls]
   /// Relative change of the objective at which five iterations in a row end the last stage.

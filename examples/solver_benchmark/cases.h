@@ -38,7 +38,7 @@ struct MatrixLabel {
   double h = 0.0;          ///< time step, s
 };
 
-/// A linear system A x = b with what is known of it.
+/// A linear system A x = b with what is known about it.
 struct BenchmarkMatrix {
   MatrixLabel label;
   solvers::SparseMatrix A;                          ///<                            [m x m]
@@ -50,15 +50,15 @@ struct BenchmarkMatrix {
 };
 
 /// Simulates and assembles. Cases that differ in their system alone share one simulation if they
-/// are asked for one after the other. Belongs to one thread at a time.
+/// are requested one after the other. Belongs to one thread at a time.
 class CaseAssembler {
  public:
   /// @param stop  ends a simulation early; may be null
   explicit CaseAssembler(const std::atomic<bool>* stop = nullptr);
   ~CaseAssembler();
 
-  /// @throws InvalidInput, IoError for a scene or a family's number that is not right, and for a
-  ///         system that the motion does not have
+  /// @throws InvalidInput, IoError for an invalid scene or number of joints, and for a system that
+  ///         the motion does not have
   /// @throws NumericalFailure if the simulation stops
   [[nodiscard]] BenchmarkMatrix assemble(const Case& which);
 

@@ -17,7 +17,7 @@ enum class CorpusSize { kSmall, kMedium, kLarge };
 
 /// The cases of a corpus, in a fixed order: every family and every scene × BDF1, BDF2 × the four
 /// systems, with as many steps as suit the size and the model. Models whose periodic system is
-/// singular go without it.
+/// singular are left without it.
 ///
 /// @param scenes  the folder of the examples' scenes
 [[nodiscard]] std::vector<Case> corpus_cases(CorpusSize size, const std::filesystem::path& scenes);

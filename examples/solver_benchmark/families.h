@@ -23,7 +23,7 @@ struct Family {
 /// chain, tree, hand.
 [[nodiscard]] const std::vector<Family>& families();
 
-/// @throws InvalidInput naming the families there are
+/// @throws InvalidInput listing the known families
 [[nodiscard]] const Family& find_family(std::string_view name);
 
 /// The mechanism of a family with n motorised, damped revolute joints, in metres and kilograms.
@@ -31,7 +31,7 @@ struct Family {
 /// @throws InvalidInput if n is smaller than the family allows
 [[nodiscard]] Model make_model(const Family& family, int joints);
 
-/// A motion that goes on: controls swing gently, each coordinate's out of step with the next.
+/// A sustained motion: controls oscillate gently, each out of phase with the next.
 ///
 /// @param inputs     of the model's horizon; q0 and u are set
 /// @param amplitude  of the controls

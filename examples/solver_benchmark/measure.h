@@ -8,7 +8,7 @@
 
 namespace hbar::solver_benchmark {
 
-/// What time is measured.
+/// Which time is measured.
 enum class Clock {
   kWall,  ///< what passes
   kCpu    ///< what the process computes, all threads together: steadier on a machine that is shared
@@ -22,7 +22,7 @@ struct MeasureOptions {
   int rhs = 16;              ///< right-hand sides solved at once, ≥ 1
 };
 
-/// A matrix's own numbers, and the solution that others are compared with.
+/// Data of a matrix, and the reference solution.
 struct Reference {
   Eigen::VectorXd x;                ///< refined beyond working precision; empty if there is none
   std::optional<double> condition;  ///< estimate of ‖A‖₁ ‖A⁻¹‖₁
@@ -51,14 +51,14 @@ struct Measurement {
   std::optional<double> forward_error;  ///< ‖x − reference‖∞ / ‖reference‖∞
 
   [[nodiscard]] bool solved() const { return failure.empty(); }
-  /// analyse + factorise + solve: what one system costs that was never seen before.
+  /// analyse + factorise + solve: the cost of one new system.
   [[nodiscard]] double total() const { return analyse + factorise + solve; }
 };
 
 /// Solves by KLU and refines; estimates the condition unless the matrix came with it.
 [[nodiscard]] Reference find_reference(const BenchmarkMatrix& matrix);
 
-/// Measures a solver. What the solver refuses is not thrown but told in Measurement::failure.
+/// Measures a solver. A refusal by the solver is not thrown but reported in Measurement::failure.
 ///
 /// @param solver  a name of available_solvers(), or "auto"
 [[nodiscard]] Measurement measure(const BenchmarkMatrix& matrix, const Reference& reference,

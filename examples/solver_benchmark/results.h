@@ -20,7 +20,7 @@ struct MatrixResults {
   std::vector<Measurement> measurements;
 };
 
-/// What a benchmark measured, as far as it got.
+/// The measurements of a benchmark, as far as it got.
 struct BenchmarkResults {
   MeasureOptions options;
   bool interrupted = false;
@@ -38,7 +38,7 @@ struct BenchmarkResults {
 [[nodiscard]] std::vector<ScalingLine> scaling_lines(const BenchmarkResults& results,
                                                      ScalingAxis axis);
 
-/// For people: a table per matrix (of few matrices), then what they say together.
+/// Readable output: a table per matrix (if there are few), then a summary.
 [[nodiscard]] std::string results_table(const BenchmarkResults& results);
 
 /// A row for every solver on every matrix; what is not known is empty.

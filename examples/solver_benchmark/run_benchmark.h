@@ -27,8 +27,8 @@ struct BenchmarkPlan {
 ///         orderings
 void check_plan(const BenchmarkPlan& plan);
 
-/// Measures. What goes wrong with a matrix or a solver stands in the results; the rest goes on. An
-/// ordering that a solver does not offer is left out.
+/// Runs the benchmark. Failures of a matrix or a solver are recorded in the results; the rest
+/// continues. Orderings that a solver does not offer are skipped.
 ///
 /// @throws as check_plan
 [[nodiscard]] BenchmarkResults run_benchmark(const BenchmarkPlan& plan);

@@ -7,7 +7,8 @@
 
 namespace hbar::solver_benchmark {
 
-/// What a matrix's file cannot say of it, as JSON: where it comes from, its structure and blocks.
+/// What a matrix file cannot express, as JSON: where the matrix comes from, its structure and
+/// blocks.
 ///
 /// @param backward_error  of the solution that is written beside the matrix
 [[nodiscard]] std::string sidecar_json(const BenchmarkMatrix& matrix, double backward_error);

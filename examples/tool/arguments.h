@@ -13,7 +13,7 @@ namespace hbar::tool {
 /// What to do. The first four take a scene and have Arguments.
 enum class Command { kInfo, kSimulate, kGradient, kCheck, kSolvers, kCorpus };
 
-/// What the command line says. Sizes are not checked: the scene is not read yet.
+/// The command line as parsed. Sizes are not checked: the scene is not read yet.
 struct Arguments {
   Command command = Command::kInfo;
   std::string scene;  ///< a file

@@ -4,7 +4,7 @@
 
 namespace hbar::tool {
 
-/// The problem that the command line asks for: the scene, with initial state and controls set.
+/// The problem given by the command line: the scene, with initial state and controls set.
 ///
 /// @throws ToolError  kUsage for options that do not suit the scene, kBadScene for the scene and
 ///                    the control file, kInputOutput for files that cannot be read

@@ -22,10 +22,10 @@ void check_output(const std::optional<std::string>& output,
 void check_distinct(const std::string& option_a, const std::optional<std::string>& a,
                     const std::string& option_b, const std::optional<std::string>& b);
 
-/// Writes a text to standard output ("-") or, whole or not at all, to a file.
+/// Writes a text to standard output ("-") or, atomically, to a file.
 void write_output(const std::string& output, const std::string& text);
 
-/// Makes a folder, and those it is in, unless it is there.
+/// Creates a folder and its parents if needed.
 ///
 /// @throws ToolError (kInputOutput)
 void make_output_folder(const std::string& folder);

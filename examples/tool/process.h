@@ -8,7 +8,7 @@
 
 namespace hbar::tool {
 
-/// What the command exits with (doc/command.md).
+/// Exit codes of the command (doc/command.md).
 enum class ExitCode {
   kOk = 0,
   kCheckFailed = 1,

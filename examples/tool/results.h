@@ -12,7 +12,7 @@
 
 namespace hbar::tool {
 
-/// What a run gave: the whole of it, or the part that was reached.
+/// The results of a run, complete or as far as it got.
 struct Results {
   std::string status;       ///< "converged", "interrupted", "step_failed", "gradient_failed"
   std::string message;      ///< what went wrong; empty if nothing did
@@ -22,7 +22,7 @@ struct Results {
   /// What the contacts did at the steps' ends; empty without contacts.
   std::vector<std::vector<ContactSummary>> contact;  ///< [step 0 … steps done][contact]
   std::optional<double> value;       ///< of the objective; of a whole trajectory only
-  std::optional<Gradient> gradient;  ///< only where it was asked for and computed
+  std::optional<Gradient> gradient;  ///< only if it was requested and computed
 };
 
 /// A run's results as JSON (doc/command.md), a row of numbers on a line, 17 digits each.

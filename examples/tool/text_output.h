@@ -6,11 +6,12 @@
 
 namespace hbar::tool {
 
-/// What a model is made of: links, coordinates, motors, variables, contacts, sensors, and all
+/// The contents of a model: links, coordinates, motors, variables, contacts, sensors, and all
 /// parameters, those of `selected` marked with a star.
 [[nodiscard]] std::string describe(const Model& model, const ParameterSet& selected);
 
-/// A run for people: how it went, where it ended, what touched, the objective and its gradient.
+/// A readable report of a run: how it went, where it ended, what touched, the objective and its
+/// gradient.
 [[nodiscard]] std::string summarize(const LoadedProblem& loaded, const Results& results);
 
 }  // namespace hbar::tool

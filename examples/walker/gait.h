@@ -12,7 +12,7 @@ struct StateGap {
   double qdot = 0.0;  ///< rad/s or m/s
 };
 
-/// What a gait is like. All but `lengths`, `weight` and `solution` is of a simulation from the
+/// The properties of a gait. All but `lengths`, `weight` and `solution` is of a simulation from the
 /// solution's initial state with its controls: a whole gait, the second half with left and right
 /// exchanged, N steps each.
 struct Gait {
@@ -28,7 +28,7 @@ struct Gait {
   double slip = 0.0;               ///< how far feet slide in half a gait while they carry, m
 };
 
-/// Simulates a gait and looks at it.
+/// Simulates and evaluates a gait.
 ///
 /// @param values  the solution's half gait: as Transcription::trajectory_values
 /// @param lengths  of thighs and shanks                                                 [2]

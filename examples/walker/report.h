@@ -16,12 +16,12 @@ struct Stage {
   Gait gait;
 };
 
-/// The summary for a person to read.
+/// A readable summary.
 ///
 /// @param stages  in the order in which they were solved: some gait first, the optimum last
 [[nodiscard]] std::string summary(const Plan& plan, const std::vector<Stage>& stages);
 
-/// The same for machines, numbers at full precision.
+/// The same as data, numbers at full precision.
 [[nodiscard]] std::string result_json(const Plan& plan, const std::vector<Stage>& stages);
 
 }  // namespace hbar::walker

@@ -11,7 +11,7 @@
 
 namespace hbar::walker {
 
-/// What gait is looked for.
+/// The kind of gait to find.
 struct Plan {
   std::filesystem::path scene;  ///< examples/scenes/walker.xml or one like it
   int steps = 50;               ///< N, of half a gait: from one touch-down to the other leg's
@@ -23,11 +23,11 @@ struct Plan {
   /// Lengths of thigh and shank to begin with, m; empty: the scene's.
   std::vector<double> begin = {};
   double length_share = 0.25;  ///< how much shorter or longer thighs and shanks may get; 0: held
-  /// Steps at which BDF2 starts anew when a solution is simulated, as it does between the segments
-  /// of multiple shooting.
+  /// Steps at which BDF2 restarts when a solution is simulated, as it does between the segments of
+  /// multiple shooting.
   std::vector<int> restarts = {};
 
-  /// How far half a gait gets, m.
+  /// The distance covered by half a gait, m.
   [[nodiscard]] double advance() const { return speed * duration; }
   /// Steps during which a control stays.
   [[nodiscard]] int hold() const { return std::max(1, steps / blocks); }
@@ -37,7 +37,7 @@ struct Plan {
   }
 };
 
-/// What is minimised.
+/// The objective.
 enum class Aim {
   kFollowGuess,     ///< distance from the first guess: some gait
   kSmoothedCost,    ///< as below, with corners rounded widely and more weight on smooth torques
@@ -63,10 +63,10 @@ enum class Aim {
 /// mirror image of the start; joints stay within their limits; the left foot touches throughout,
 /// and the right one for plan.take_off() steps, after which it stays above its clearance.
 ///
-/// @throws IoError, InvalidInput  as read_scene, or if the scene is no such walker
+/// @throws IoError, InvalidInput  as read_scene, or if the scene is not such a walker
 [[nodiscard]] TrajectoryProblem walker_problem(const Plan& plan, Aim aim);
 
-/// How Ipopt is asked to solve it.
+/// Options for Ipopt.
 ///
 /// @param earlier  the result for the aim before this one, where to begin; may be null
 [[nodiscard]] solvers::IpoptOptions ipopt_options(Aim aim, const solvers::IpoptResult* earlier);

@@ -93,7 +93,7 @@ def _expected(root):
                 yield Finding(file, 1 if match.group(1) else number + 1, match.group(2))
 
 
-def _convict(name, check):
+def _check_planted(name, check):
     root = REPOSITORY / PLANTED / name
     expected = {f[:3] for f in _expected(root)}
     found = {f[:3] for f in check(root, tracked_files(root))}
@@ -105,7 +105,7 @@ def _convict(name, check):
         print(f"{PLANTED}{name}: nothing planted")
     ok = bool(expected) and expected == found
     if ok:
-        print(f"{name}: convicts ({len(expected)} planted)")
+        print(f"{name}: detects ({len(expected)} planted)")
     return ok
 
 
@@ -117,7 +117,7 @@ def main(name, check, subject):
     options = parser.parse_args()
     try:
         if options.planted:
-            sys.exit(0 if _convict(name, check) else 1)
+            sys.exit(0 if _check_planted(name, check) else 1)
         root = options.root.resolve()
         files = tracked_files(root)
         findings = sorted(set(check(root, files)))

@@ -142,7 +142,8 @@ inline void add_random_sensors(ModelBuilder& builder, Random& random) {
 /// an order that the seed shuffles; springs, dampers and limits; a motor of every kind; four end
 /// effectors; a mask of its own on each link. Subtrees are not contiguous in coordinates.
 ///
-/// @param contacts  whether bodies have shapes and contact points, touch each other and feel it
+/// @param contacts  whether bodies have shapes and contact points, touch each other and have
+///                  sensors
 [[nodiscard]] inline Model random_model(unsigned seed, bool contacts = false) {
   constexpr std::array<int, 14> kParents = {-1, 0, 1, 1, 3, 2, 0, 6, -1, 8, 7, 4, 9, 5};
   Random random(seed);
@@ -203,7 +204,7 @@ inline void add_random_sensors(ModelBuilder& builder, Random& random) {
 /// The same with contacts.
 [[nodiscard]] inline Model random_contact_model(unsigned seed) { return random_model(seed, true); }
 
-/// How many random states of a model a claim is put to.
+/// How many random states of a model each claim is tested at.
 inline constexpr int kStates = 20;
 
 /// A state and accelerations, all entries of order one.

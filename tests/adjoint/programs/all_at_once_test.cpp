@@ -28,7 +28,7 @@ struct SimulatedSubject {
   TrajectoryProblem (*make)();
 };
 
-/// The same problem with steps that begin anew.
+/// The same problem with restarts.
 TrajectoryProblem restarted_transcription() {
   TrajectoryProblem problem = testing::small_transcription("bdf2", 6, false);
   SimulationOptions options = problem.horizon.options();

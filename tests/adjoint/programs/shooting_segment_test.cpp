@@ -20,8 +20,8 @@ constexpr int kBegin = 4;  // of the segment under test, within a block of contr
 constexpr int kLength = 5;
 constexpr int kHold = 3;
 
-/// Steps 4 … 8 of ten, of which the sixth begins anew; its blocks of controls are the second and
-/// the third.
+/// Steps 4 … 8 of ten, of which the sixth restarts; its blocks of controls are the second and the
+/// third.
 class SegmentOfEveryIntegrator : public ::testing::TestWithParam<std::string> {
  protected:
   static Problem make(const std::string& integrator) {

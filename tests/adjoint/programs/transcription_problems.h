@@ -17,7 +17,7 @@ namespace hbar::testing {
 
 /// A problem of a simulation with parameters of every kind but few scalars, whose terms read every
 /// field, with and without second partials, in one step and across steps, and whose initial state
-/// is looked for where `free_state`.
+/// is optimised if `free_state`.
 [[nodiscard]] inline TrajectoryProblem every_field_problem(Problem problem,
                                                            const std::vector<std::string>& names,
                                                            std::vector<Measurement> measurements,

@@ -62,7 +62,7 @@ TEST(BlockSubstitution, AdoptsFactorsForOneFactorisation) {
   solver.factorize(A);
   solver.solve(b, x);
   EXPECT_EQ(x, expected);
-  // Factors of a nearby block are refined; those of another block are convicted by the residual.
+  // Factors of a nearby block are refined; those of another block are rejected by the residual.
   solver.adopt_factors(1, BlockFactors((1.0 + 1e-7) * dense.bottomRightCorner(4, 4)));
   solver.factorize(A);
   solver.solve(b, x);
