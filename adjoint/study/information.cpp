@@ -139,7 +139,11 @@ Information information(const Fit& fit, const InformationOptions& options) {
   }
   Eigen::MatrixXd even = Eigen::MatrixXd::Zero(std::max(data, k), k);
   even.topRows(data) = weighted * unit.asDiagonal();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(even, Eigen::ComputeThinV);
+  const Eigen::MatrixXd R = Eigen::HouseholderQR<Eigen::MatrixXd>(even)
+                                .matrixQR()
+                                .topRows(k)
+                                .triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner> svd(R, Eigen::ComputeFullV);
   const Eigen::VectorXd& answers = svd.singularValues();
   Eigen::Index known = 0;
   while (known < k && answers[known] > options.least_answer * std::max(answers[0], 1e-300)) {

@@ -124,7 +124,7 @@ ConstraintPointer variable_at_step(const Model& model, const std::string& end_ef
                                    const Eigen::Vector3d& target, double half_width) {
   require_step("variable_at_step", step);
   if (!target.allFinite() || !(half_width >= 0.0)) {
-    throw InvalidInput(concat("variable_at_step: target (", target.transpose(), ") ± ", half_width,
+    throw InvalidInput(concat("variable_at_step: target (", listed(target), ") ± ", half_width,
                               "; the target must be finite and the half width ≥ 0"));
   }
   constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};

@@ -114,7 +114,7 @@ ConstraintPointer control_rate(const Model& model, int steps, const Eigen::Vecto
   require_steps("control_rate", steps);
   if ((change.size() != 1 && change.size() != model.control_count()) ||
       !(change.array() >= 0.0).all()) {
-    throw InvalidInput(concat("control_rate: change is (", change.transpose(),
+    throw InvalidInput(concat("control_rate: change is (", listed(change),
                               "); it must be one number or ", model.control_count(), ", each ≥ 0"));
   }
   RowBuilder rows;
@@ -137,8 +137,8 @@ ConstraintPointer periodicity(const Model& model, int steps, std::vector<int> co
   }
   const auto count = static_cast<Eigen::Index>(coordinates.size());
   if (advance.size() != 0 && (advance.size() != count || !advance.allFinite())) {
-    throw InvalidInput(concat("periodicity: advance is (", advance.transpose(), "); it must be ",
-                              count, " finite numbers or none"));
+    throw InvalidInput(concat("periodicity: advance is (", listed(advance), "); it must be ", count,
+                              " finite numbers or none"));
   }
   RowBuilder rows;
   for (Eigen::Index i = 0; i < count; ++i) {

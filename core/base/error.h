@@ -1,8 +1,13 @@
 #pragma once
 
-#include <sstream>
+#include <concepts>
+#include <cstddef>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 
 namespace hbar {
 
@@ -32,12 +37,54 @@ class NumericalFailure : public Error {
   using Error::Error;
 };
 
-/// All arguments in one string, each written by `operator<<`.
+namespace detail {
+
+/// What concat puts together: text, or a number as `operator<<` writes it. Borrows the text.
+class Piece {
+ public:
+  Piece(std::string_view text) : text_(text) {}    // NOLINT: pieces are written as what they are
+  Piece(const std::string& text) : text_(text) {}  // NOLINT
+  Piece(const char* text) : text_(text) {}         // NOLINT
+  Piece(char letter);                              // NOLINT
+  Piece(double number);                            // NOLINT
+  template <std::integral Integer>
+  Piece(Integer number) : Piece(std::in_place, number) {}  // NOLINT
+
+  [[nodiscard]] std::string_view text() const {
+    return digits_ > 0 ? std::string_view(number_, digits_) : text_;
+  }
+
+ private:
+  Piece(std::in_place_t, long long number);
+  Piece(std::in_place_t, unsigned long long number);
+  template <std::integral Integer>
+  Piece(std::in_place_t tag, Integer number)
+      : Piece(tag, static_cast<std::conditional_t<std::is_signed_v<Integer>, long long,
+                                                  unsigned long long>>(number)) {}
+
+  std::string_view text_ = {};
+  char number_[32];
+  std::size_t digits_ = 0;
+};
+
+[[nodiscard]] std::string join(std::initializer_list<Piece> pieces);
+
+}  // namespace detail
+
+/// All arguments in one string, each written as by `operator<<`.
 template <typename... Parts>
 [[nodiscard]] std::string concat(const Parts&... parts) {
-  std::ostringstream out;
-  (out << ... << parts);
-  return out.str();
+  return detail::join({detail::Piece(parts)...});
+}
+
+/// The entries of a range, as concat writes them, with blanks between.
+template <typename Range>
+[[nodiscard]] std::string listed(const Range& entries) {
+  std::string all;
+  for (const auto& entry : entries) {
+    all += all.empty() ? concat(entry) : concat(' ', entry);
+  }
+  return all;
 }
 
 }  // namespace hbar

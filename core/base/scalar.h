@@ -5,13 +5,22 @@
 #include <concepts>
 #include <limits>
 
-#if EIGEN_MAX_ALIGN_BYTES != 16 || EIGEN_MAX_STATIC_ALIGN_BYTES != 16 || \
+#if EIGEN_DEFAULT_ALIGN_BYTES != 64 || EIGEN_MAX_STATIC_ALIGN_BYTES != 16 || \
     EIGEN_MALLOC_ALREADY_ALIGNED
 #error \
-    "compile the whole program with -DEIGEN_MAX_ALIGN_BYTES=16 -DEIGEN_MALLOC_ALREADY_ALIGNED=0, as hbar was (hbar::hbar does)"
+    "compile the whole program with -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 -DEIGEN_MALLOC_ALREADY_ALIGNED=0, as hbar was (hbar::hbar does)"
 #endif
 
 namespace hbar {
+
+namespace detail {
+
+/// Links only with a library that allocates as this program does: aligned to 64 bytes, with 16 for
+/// what is no allocation.
+extern const char kAlignedTo64And16;
+inline const char* const kAlignedAsTheLibrary = &kAlignedTo64And16;
+
+}  // namespace detail
 
 /// A dual number a + b ε with ε² = 0: a value and its derivative along one direction.
 ///

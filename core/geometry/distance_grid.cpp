@@ -240,7 +240,7 @@ DistanceGrid::State DistanceGrid::read(std::string_view bytes) {
   const std::size_t expected = sizeof(double) * coefficients.size() + sizeof(std::uint64_t);
   if (reader.left() != expected) {
     throw InvalidInput(concat("distance grid: ", reader.left(), " bytes where the coefficients of ",
-                              nodes.count.transpose(), " nodes take ", expected));
+                              listed(nodes.count), " nodes take ", expected));
   }
   for (double& number : coefficients) {
     number = reader.number<double>();

@@ -20,12 +20,12 @@ std::size_t volume(const Eigen::Vector3i& count) {
 
 void check_grid(const GridNodes& nodes, const Eigen::Vector3i& expected, std::size_t found) {
   if (nodes.count.minCoeff() < 4) {
-    throw InvalidInput(concat("tricubic spline: a grid of ", nodes.count.transpose(),
+    throw InvalidInput(concat("tricubic spline: a grid of ", listed(nodes.count),
                               " nodes; at least 4 on each axis are needed"));
   }
   if (volume(expected) != found) {
     throw InvalidInput(concat("tricubic spline: ", found, " numbers for a grid of ",
-                              expected.transpose(), "; ", volume(expected), " are needed"));
+                              listed(expected), "; ", volume(expected), " are needed"));
   }
 }
 

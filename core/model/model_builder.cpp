@@ -26,7 +26,7 @@ void require(bool condition, const std::string& message) {
 void normalise(Eigen::Vector3d& axis, const std::string& where) {
   const double length = axis.norm();
   require(axis.allFinite() && length > 0.0,
-          concat(where, ": axis is (", axis.transpose(), "); it must be a non-zero vector"));
+          concat(where, ": axis is (", listed(axis), "); it must be a non-zero vector"));
   axis /= length;
 }
 
@@ -78,10 +78,10 @@ void check_body(const Body& body) {
           concat(where, ": mass is ", body.mass, "; it must be positive"));
   const Eigen::Vector3d& I = body.inertia;
   require(I.allFinite() && I.minCoeff() > 0.0,
-          concat(where, ": principal moments are (", I.transpose(), "); they must be positive"));
+          concat(where, ": principal moments are (", listed(I), "); they must be positive"));
   const double tolerance = 1e-9 * I.sum();
   require(2.0 * I.maxCoeff() <= I.sum() + tolerance,
-          concat(where, ": principal moments are (", I.transpose(),
+          concat(where, ": principal moments are (", listed(I),
                  "); none may exceed the sum of the other two"));
   require(body.contact_points.allFinite(), where + ": its contact points must be finite");
 }

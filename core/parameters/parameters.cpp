@@ -38,7 +38,7 @@ void require_physical(const Model& model, const Eigen::VectorXd& mass,
     }
     const Eigen::Vector3d I = moments.col(i);
     if (!(I.minCoeff() > 0.0) || 2.0 * I.maxCoeff() > I.sum() * (1.0 + 1e-9)) {
-      throw InvalidInput(concat("body.", body, ".inertia is (", I.transpose(),
+      throw InvalidInput(concat("body.", body, ".inertia is (", listed(I),
                                 "); moments must be positive and none may exceed the sum of the "
                                 "other two (see inertia_chart for a chart that keeps to that)"));
     }

@@ -18,7 +18,16 @@ std::vector<SensorPoint> rectangle_points(const RectArray& rect) {
   Eigen::Matrix<double, 3, 2> axes;
   axes << vector(rect.axis0).stableNormalized(), vector(rect.axis1).stableNormalized();
   const Eigen::Vector3d origin = vector(rect.rect_pos0);
-  const Eigen::Vector2d sides = axes.colPivHouseholderQr().solve(vector(rect.rect_pos1) - origin);
+  // How far the opposite corner lies along each axis: its projection onto their plane, in the basis
+  // dual to them.
+  const Eigen::Vector3d diagonal = vector(rect.rect_pos1) - origin;
+  const Eigen::Vector3d normal = axes.col(0).cross(axes.col(1));
+  if (normal.norm() < 1e-9) {
+    throw InvalidInput("the axes axis0 and axis1 are zero or parallel; they span a plane");
+  }
+  const Eigen::Vector2d sides = Eigen::Vector2d(diagonal.cross(axes.col(1)).dot(normal),
+                                                axes.col(0).cross(diagonal).dot(normal)) /
+                                normal.squaredNorm();
   const auto [n0, n1] = rect.resolution;
   std::vector<SensorPoint> points;
   for (int i = 0; i < n0; ++i) {

@@ -16,7 +16,8 @@ from pathlib import Path
 
 import lint
 
-FLAGS = ["-std=c++20", "-DEIGEN_MAX_ALIGN_BYTES=16", "-DEIGEN_MALLOC_ALREADY_ALIGNED=0", "-Wall",
+FLAGS = ["-std=c++20", "-DEIGEN_MAX_ALIGN_BYTES=64",
+         "-DEIGEN_MAX_STATIC_ALIGN_BYTES=16", "-DEIGEN_MALLOC_ALREADY_ALIGNED=0", "-Wall",
          "-Wextra", "-Werror"]
 
 

@@ -29,6 +29,34 @@ for flags in "" "-march=native"; do
   "$folder/alone"
 done
 
+# Both sides of the interface allocate alike, whatever compiler and machine each is for.
+machines=none
+[ "$(uname -m)" != x86_64 ] || machines="none native"
+! grep -qw avx2 /proc/cpuinfo 2>/dev/null || machines="$machines x86-64-v3"
+for compiler in g++ clang++; do
+  if ! command -v $compiler >/dev/null; then
+    echo "package: skipped: memory shared with a program by $compiler, which is not installed"
+    continue
+  fi
+  echo 'int main() {}' >"$scratch/empty.cpp"
+  sanitize=-fsanitize=address
+  if ! $compiler $sanitize "$scratch/empty.cpp" -o "$scratch/empty" 2>/dev/null; then
+    echo "package: $compiler has no address sanitizer here: without it"
+    sanitize=
+  fi
+  for machine in $machines; do
+    flags=$sanitize
+    [ "$machine" = none ] || flags="$sanitize -march=$machine"
+    folder=$scratch/allocation-$compiler-$machine
+    cmake -G Ninja -S "$here" -B "$folder" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
+      -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release \
+      -DCMAKE_CXX_FLAGS_RELEASE="-O1" -DCMAKE_CXX_FLAGS="$flags" >"$folder.log"
+    cmake --build "$folder" --target allocation >>"$folder.log"
+    echo "package: $compiler, -march: $machine"
+    "$folder/allocation"
+  done
+done
+
 # A component that does not exist, and one that was not built, are refused by name.
 mkdir "$scratch/refused"
 cat >"$scratch/refused/CMakeLists.txt" <<'PROJECT'
@@ -51,7 +79,7 @@ refuses nlopt 'built without hbar::nlopt.*libnlopt-dev'
 
 # Without CMake: as the error says, or refused with what to do.
 compile="${CXX:-c++} -std=c++20 -fsyntax-only -I$scratch/prefix/include $(pkg-config --cflags eigen3)"
-remedy="-DEIGEN_MAX_ALIGN_BYTES=16 -DEIGEN_MALLOC_ALREADY_ALIGNED=0"
+remedy="-DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 -DEIGEN_MALLOC_ALREADY_ALIGNED=0"
 wider=
 [ "$(uname -m)" != x86_64 ] || wider=-mavx2
 $compile $wider $remedy "$here/main.cpp"
