@@ -4,9 +4,9 @@
 //   cmake --build build/release --target finger_reach
 //   build/release/examples/finger_reach/finger_reach
 //
-// prints a line per iteration of Ipopt and a summary, and writes result.json, solution.csv,
-// trajectory.csv and iterations.csv into results/finger_reach. doc/finger_reach.md tells what is
-// solved and found.
+// prints a line per iteration of Ipopt and a summary, and writes result.json, finger.svg (a picture
+// of the optimum), solution.csv, trajectory.csv and iterations.csv into results/finger_reach.
+// doc/finger_reach.md tells what is solved and found.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +15,7 @@
 
 #include "examples/common/progress.h"
 #include "hbar/core/files/atomic_file.h"
+#include "picture.h"
 #include "report.h"
 #include "studies.h"
 
@@ -89,8 +90,9 @@ ExitCode run(const Arguments& arguments) {
   const solvers::IpoptResult& result = outcome.optimised.result;
   outcome.values = program.trajectory_values(result.x);
   scene::write_file_atomically(folder(arguments) / "result.json", result_json(reach, outcome));
+  scene::write_file_atomically(folder(arguments) / "finger.svg", picture_svg(reach, outcome));
   print('\n' + summary(reach, outcome));
-  print(fmt::format("written:     {}/result.json\n", folder(arguments).string()));
+  print(fmt::format("written:     {0}/result.json, {0}/finger.svg\n", folder(arguments).string()));
   if (arguments.sensitivity && result.converged()) {
     print(sensitivity_table(reach, result));
   }

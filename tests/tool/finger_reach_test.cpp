@@ -1,5 +1,7 @@
 // The main example, run as a program.
 
+#include <tinyxml2.h>
+
 #include <algorithm>
 
 #include "tests/tool/running.h"
@@ -27,6 +29,21 @@ class FingerReachProgram : public ToolTest {
     return std::count(text.begin(), text.end(), '\n');
   }
 
+  /// How many groups of a class its picture has; −1 if it is no SVG.
+  [[nodiscard]] int drawn(const std::string& name) const {
+    tinyxml2::XMLDocument picture;
+    if (picture.LoadFile((results() / "finger.svg").c_str()) != tinyxml2::XML_SUCCESS ||
+        picture.RootElement()->Name() != std::string("svg")) {
+      return -1;
+    }
+    int count = 0;
+    for (const auto* group = picture.RootElement()->FirstChildElement("g"); group != nullptr;
+         group = group->NextSiblingElement("g")) {
+      count += group->Attribute("class", name.c_str()) != nullptr ? 1 : 0;
+    }
+    return count;
+  }
+
   std::string out_;
   std::string err_;
 };
@@ -44,6 +61,9 @@ TEST_F(FingerReachProgram, ShowsItsProgressAndWritesWhatItFound) {
   const int iterations = found["iterations"].get<int>();
   EXPECT_EQ(lines_of("iterations.csv"), iterations + 2);
   EXPECT_EQ(lines_of("trajectory.csv"), 60 + 2);
+  EXPECT_EQ(drawn("target"), 4);
+  EXPECT_EQ(drawn("finger"), 5);  // at rest before, at the targets after
+  EXPECT_LT(std::filesystem::file_size(results() / "finger.svg"), 60000U);
   // A heading, a line per iterate, plain ones because this is no terminal.
   EXPECT_GT(std::count(out_.begin(), out_.end(), '\n'), iterations + 2);
   EXPECT_EQ(out_.find('\r'), std::string::npos);
@@ -95,6 +115,7 @@ TEST_F(FingerReachProgram, SaysThatItDidNotConvergeAndWritesItsBest) {
   EXPECT_EQ(run({"--steps", "60", "--max-iterations", "1"}), 5);
   EXPECT_EQ(result()["status"], "iteration limit");
   EXPECT_FALSE(result()["violated"].empty());
+  EXPECT_EQ(drawn("target"), 4);
 }
 
 TEST_F(FingerReachProgram, KeepsItsBestWhenInterrupted) {
