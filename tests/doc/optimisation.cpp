@@ -1,4 +1,4 @@
-// The snippets of doc/optimisation.md, run on the finger and the box of examples/scenes.
+// The snippets of doc/optimisation.md, run on the arm and the box of examples/scenes.
 
 #include <gtest/gtest.h>
 
@@ -12,32 +12,32 @@
 namespace hbar {
 namespace {
 
-/// The finger's tip is to be at a point after 0.4 s, with little torque. The first variable is the
-/// tip's mass, which is held.
-std::unique_ptr<Transcription> reach_program(double tip_mass) {
+/// The arm's hand is to be at a point after 0.4 s, with little effort. The first variable is the
+/// mass of the payload, which is held.
+std::unique_ptr<Transcription> reach_program(double payload) {
   constexpr int kSteps = 20;
-  const Model model = testing::example_model("finger.xml");
-  const auto parameters = ParameterSet::named(model, {"body.tip.mass"});
+  const Model model = testing::example_model("arm.xml");
+  const auto parameters = ParameterSet::named(model, {"body.payload.mass"});
   TrajectoryProblem problem{
       .horizon = Horizon(model, parameters, {.integrator = "bdf2", .h = 0.02, .steps = kSteps}),
-      .map = affine_map(design_variables({{.name = "tip mass",
+      .map = affine_map(design_variables({{.name = "payload",
                                            .unit = "kg",
-                                           .start = tip_mass,
-                                           .lower = tip_mass,
-                                           .upper = tip_mass}}),
+                                           .start = payload,
+                                           .lower = payload,
+                                           .upper = payload}}),
                         Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Identity(1, 1)),
       .objective = Objective(effort()),
-      .constraints = {variable_at_step(model, "tip", kSteps, {0.27, 0.05, -0.05})}};
+      .constraints = {variable_at_step(model, "hand", kSteps, {0.5, 0.12, 0.05})}};
   problem.controls.hold = 2;
   problem.controls.lower = Eigen::VectorXd::Constant(model.control_count(), -1.0);
   problem.controls.upper = Eigen::VectorXd::Constant(model.control_count(), 1.0);
   return transcribe(problem, {.formulation = Formulation::kAllAtOnce});
 }
 
-constexpr double kTipMass = 0.007;  // kg
+constexpr double kPayload = 0.9;  // kg
 
 TEST(OptimisationPage, PassesOptionsToIpopt) {
-  const auto program = reach_program(kTipMass);
+  const auto program = reach_program(kPayload);
 
   solvers::IpoptOptions options;
   options.hessian = solvers::HessianKind::kExact;
@@ -73,7 +73,7 @@ TEST(OptimisationPage, MeasuresWhatTheStateDoesNotSay) {
 }
 
 TEST(OptimisationPage, StartsWarm) {
-  const auto program = reach_program(kTipMass);
+  const auto program = reach_program(kPayload);
   solvers::IpoptOptions options;
   options.hessian = solvers::HessianKind::kExact;
   const auto earlier = solvers::solve_with_ipopt(*program, options);
@@ -94,22 +94,23 @@ solvers::IpoptResult solve_exactly(Transcription& program) {
 }
 
 TEST(OptimisationPage, KnowsHowAnOptimumMoves) {
-  const auto program = reach_program(kTipMass);
+  const auto program = reach_program(kPayload);
   const auto result = solve_exactly(*program);
   ASSERT_TRUE(result.converged()) << result.message;
 
-  constexpr int kTipMassIndex = 0;  // in x, which begins with the design variables
-  const auto by_mass = solvers::sensitivity_of_optimum(*program, result.point(), {kTipMassIndex});
-  const double effort_per_kg = by_mass.df_dtheta[0];  // dx_dtheta, dlambda_dtheta likewise
+  constexpr int kPayloadIndex = 0;  // in x, which begins with the design variables
+  const auto by_payload =
+      solvers::sensitivity_of_optimum(*program, result.point(), {kPayloadIndex});
+  const double effort_per_kg = by_payload.df_dtheta[0];  // dx_dtheta, dlambda_dtheta likewise
 
-  const double step = 1e-2 * kTipMass;
-  const auto above = solve_exactly(*reach_program(kTipMass + step));
-  const auto below = solve_exactly(*reach_program(kTipMass - step));
+  const double step = 1e-2 * kPayload;
+  const auto above = solve_exactly(*reach_program(kPayload + step));
+  const auto below = solve_exactly(*reach_program(kPayload - step));
   ASSERT_TRUE(above.converged() && below.converged());
   const double df = (above.objective - below.objective) / (2.0 * step);
   EXPECT_NEAR(effort_per_kg, df, 1e-3 * std::abs(df));
   const Eigen::VectorXd dx = (above.x - below.x) / (2.0 * step);
-  EXPECT_LT((by_mass.dx_dtheta.col(0) - dx).norm(), 1e-2 * dx.norm());
+  EXPECT_LT((by_payload.dx_dtheta.col(0) - dx).norm(), 1e-2 * dx.norm());
 }
 
 }  // namespace

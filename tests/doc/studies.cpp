@@ -1,4 +1,4 @@
-// The snippets of doc/studies.md, run on the finger and the pendulum of examples/scenes.
+// The snippets of doc/studies.md, run on the arm, the finger and the pendulum of examples/scenes.
 
 #include <gtest/gtest.h>
 
@@ -22,11 +22,9 @@
 namespace hbar {
 namespace {
 
-const Eigen::Vector3d kFingerTarget(0.27, 0.05, -0.05);
-
-/// 0.4 s of the finger, with torques held for 80 ms; what is wanted is added by the tests.
-TrajectoryProblem finger_problem() {
-  const Model model = testing::example_model("finger.xml");
+/// 0.4 s of a scene, with controls held for 80 ms; what is wanted is added by the tests.
+TrajectoryProblem short_problem(const std::string& scene) {
+  const Model model = testing::example_model(scene);
   TrajectoryProblem problem{
       .horizon = Horizon(model, {}, {.integrator = "bdf2", .h = 0.02, .steps = 20}),
       .map = parameter_map({}),
@@ -37,14 +35,14 @@ TrajectoryProblem finger_problem() {
   return problem;
 }
 
-/// With its tip at the target in the end.
+/// The arm with its hand at a point in the end.
 std::unique_ptr<Transcription> make_program() {
-  TrajectoryProblem problem = finger_problem();
-  problem.constraints = {variable_at_step(problem.horizon.model(), "tip", 20, kFingerTarget)};
+  TrajectoryProblem problem = short_problem("arm.xml");
+  problem.constraints = {variable_at_step(problem.horizon.model(), "hand", 20, {0.5, 0.12, 0.05})};
   return transcribe(problem);
 }
 
-/// Any torques within their bounds.
+/// Any controls within their bounds.
 solvers::PrimalDualPoint random_start(const solvers::Nlp& program, std::mt19937_64& random) {
   const solvers::NlpVariables& variables = program.variables();
   solvers::PrimalDualPoint start{.x = variables.start};
@@ -60,7 +58,7 @@ solvers::IpoptResult solve_from_file(Transcription& program, const std::filesyst
   if (std::filesystem::exists(file)) {
     options.warm_start = study::load_solution(file, program);
   }
-  const auto result = study::solve_and_save(program, options, file, {{"scene", "finger.xml"}});
+  const auto result = study::solve_and_save(program, options, file, {{"scene", "arm.xml"}});
 
   return result;
 }
@@ -68,12 +66,12 @@ solvers::IpoptResult solve_from_file(Transcription& program, const std::filesyst
 TEST(StudiesPage, GoesOnFromAFile) {
   const scene::TemporaryFolder folder;
   const auto program = make_program();
-  const auto first = solve_from_file(*program, folder / "finger.sol");
+  const auto first = solve_from_file(*program, folder / "arm.sol");
   ASSERT_TRUE(first.converged()) << first.message;
-  const auto second = solve_from_file(*program, folder / "finger.sol");
+  const auto second = solve_from_file(*program, folder / "arm.sol");
   EXPECT_TRUE(second.converged()) << second.message;
   EXPECT_LT(second.iterations, first.iterations);
-  EXPECT_EQ(study::read_solution(folder / "finger.sol").about.at("scene"), "finger.xml");
+  EXPECT_EQ(study::read_solution(folder / "arm.sol").about.at("scene"), "arm.xml");
 }
 
 TEST(StudiesPage, StartsManyTimes) {
@@ -82,7 +80,7 @@ TEST(StudiesPage, StartsManyTimes) {
   const std::atomic<bool> interrupted = false;
 
   const study::JobReport report = study::run_jobs(
-      {.name = "finger, random starts",
+      {.name = "arm, random starts",
        .seed = 1,
        .count = 8,
        .columns = {"iterations", "violation"},
@@ -116,14 +114,14 @@ TEST(StudiesPage, StartsManyTimes) {
 }
 
 TEST(StudiesPage, WalksAlongAFront) {
-  TrajectoryProblem problem = finger_problem();
+  TrajectoryProblem problem = short_problem("finger.xml");
+  const Eigen::Vector3d target(0.27, 0.05, -0.05);
 
-  const Objective torques(effort());
-  const Objective miss(variable_tracking(kFingerTarget));
+  const Objective cost(effort());
+  const Objective miss(variable_tracking(target));
   const auto front = study::pareto_sweep(
       study::equal_weights(11), [&](double weight, const solvers::PrimalDualPoint* neighbour) {
-        problem.objective =
-            Objective(effort(weight)).add(variable_tracking(kFingerTarget, 1.0 - weight));
+        problem.objective = Objective(effort(weight)).add(variable_tracking(target, 1.0 - weight));
         const auto program = transcribe(problem);
         solvers::IpoptOptions options;
         options.hessian = solvers::HessianKind::kGaussNewton;
@@ -133,7 +131,7 @@ TEST(StudiesPage, WalksAlongAFront) {
         const auto result = solvers::solve_with_ipopt(*program, options);
         const TrajectoryValues& motion = program->trajectory_values(result.x);
         return study::WeightedOptimum{.converged = result.converged(),
-                                      .f1 = torques.value(motion),
+                                      .f1 = cost.value(motion),
                                       .f2 = miss.value(motion),
                                       .point = result.point(),
                                       .message = result.message};
