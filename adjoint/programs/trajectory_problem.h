@@ -34,13 +34,13 @@ struct InitialStateBounds {
 /// variables d, held controls and, optionally, the initial state, subject to constraints. A
 /// Transcription turns it into a nonlinear program in one of three ways.
 struct TrajectoryProblem {
-  Horizon horizon;                             ///< scene, horizon, integrator, measurements
-  DesignMapPointer map;                        ///< onto the horizon's parameters
-  Objective objective;                         ///< of trajectory, controls and parameters
-  std::vector<ConstraintPointer> constraints;  ///< their rows follow in this order
-  HeldControls controls;
-  Eigen::VectorXd q0;     ///< fixed, or where the optimisation starts; empty: zeros    [dof]
-  Eigen::VectorXd qdot0;  ///< the same                                                 [dof]
+  Horizon horizon;                                  ///< scene, horizon, integrator, measurements
+  DesignMapPointer map;                             ///< onto the horizon's parameters
+  Objective objective;                              ///< of trajectory, controls and parameters
+  std::vector<ConstraintPointer> constraints = {};  ///< their rows follow in this order
+  HeldControls controls = {};
+  Eigen::VectorXd q0 = {};     ///< fixed, or where the optimisation starts; empty: zeros  [dof]
+  Eigen::VectorXd qdot0 = {};  ///< the same                                               [dof]
   /// Set if the initial state is optimised as well.
   std::optional<InitialStateBounds> initial = std::nullopt;
   Eigen::VectorXd q_scale = {};     ///< typical size of a change of q; empty: ones     [dof]

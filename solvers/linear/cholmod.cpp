@@ -38,14 +38,6 @@ struct Api<WideIndex> {
   static constexpr auto kFreeDense = &cholmod_l_free_dense;
 };
 
-/// Newer versions use OpenMP where they find it; a solver belongs to one thread.
-template <typename Common>
-void use_one_thread(Common& common) {
-  if constexpr (requires { common.nthreads_max; }) {
-    common.nthreads_max = 1;
-  }
-}
-
 /// One matrix, its factor and what CHOLMOD needs to remember, freed together.
 template <typename Index>
 class Handle {
@@ -55,7 +47,7 @@ class Handle {
     common.print = 0;
     common.try_catch = 1;  // no messages: the status tells
     common.useGPU = 0;
-    use_one_thread(common);
+    suitesparse::use_one_thread(common);
   }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;

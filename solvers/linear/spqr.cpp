@@ -11,17 +11,7 @@ using suitesparse::IndexArrays;
 using suitesparse::WideIndex;
 using Factorization = SuiteSparseQR_factorization<double>;
 
-/// Newer versions use OpenMP where they find it, older ones TBB; a solver belongs to one thread.
-template <typename Common>
-void use_one_thread(Common& common) {
-  common.SPQR_grain = 1.0;
-  common.SPQR_nthreads = 1;
-  if constexpr (requires { common.nthreads_max; }) {
-    common.nthreads_max = 1;
-  }
-}
-
-int method_of(Ordering ordering) {
+int spqr_ordering(Ordering ordering) {
   switch (ordering) {
     case Ordering::kNatural:
       return SPQR_ORDERING_NATURAL;
@@ -46,7 +36,9 @@ class Spqr final : public LinearSolver {
     common_.print = 0;
     common_.try_catch = 1;  // no messages: the status tells
     common_.useGPU = 0;
-    use_one_thread(common_);
+    suitesparse::use_one_thread(common_);
+    common_.SPQR_grain = 1.0;  // older versions use TBB where they find it
+    common_.SPQR_nthreads = 1;
   }
   Spqr(const Spqr&) = delete;
   Spqr& operator=(const Spqr&) = delete;
@@ -97,7 +89,7 @@ class Spqr final : public LinearSolver {
     view_.packed = 1;
     const auto lock = suitesparse::lock_metis(ordering_);
     const int detect_rank = 1;
-    qr_ = SuiteSparseQR_symbolic<double>(method_of(ordering_), detect_rank, &view_, &common_);
+    qr_ = SuiteSparseQR_symbolic<double>(spqr_ordering(ordering_), detect_rank, &view_, &common_);
     if (qr_ == nullptr || common_.status < CHOLMOD_OK) {
       throw_status("analyze");
     }

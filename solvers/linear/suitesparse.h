@@ -58,6 +58,14 @@ void narrow_indices(const Index* permutation, std::vector<int>& narrow) {
                  [](Index index) { return static_cast<int>(index); });
 }
 
+/// A solver belongs to one thread; newer versions use OpenMP where they find it.
+template <typename Common>
+void use_one_thread(Common& common) {
+  if constexpr (requires { common.nthreads_max; }) {
+    common.nthreads_max = 1;
+  }
+}
+
 /// A lock held during an analysis that may call METIS, which seeds the process-wide random
 /// generator and draws from it: orderings of concurrent analyses would depend on timing.
 [[nodiscard]] inline std::unique_lock<std::mutex> lock_metis(Ordering ordering) {

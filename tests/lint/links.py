@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Relative links in the documents lead to a file, and to a heading where they name one."""
+"""Relative links in the documents lead to a file, and to a heading where they name one; files that
+the documents name by their paths are there."""
 
 import re
 
 import lint
 
 LINK = re.compile(r"\[[^\]\n]*\]\(<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\)|^\[[^\]]+\]:\s*(\S+)", re.MULTILINE)
+PATH = re.compile(r"`((?:adjoint|cmake|contact|core|doc|examples|solvers|tests)/[a-z_\d./-]+\.\w+)`")
 CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 
 
@@ -26,7 +28,13 @@ def markdown(files):
 
 def check(root, files):
     for file in markdown(files):
-        text = prose(lint.read(root, file))
+        whole = lint.read(root, file)
+        if file != "CHANGELOG.md":  # which names what was
+            for match in PATH.finditer(whole):
+                if not (root / match.group(1)).exists():
+                    line = whole.count("\n", 0, match.start()) + 1
+                    yield lint.Finding(file, line, "path", f"{match.group(1)} does not exist")
+        text = prose(whole)
         for match in LINK.finditer(text):
             target = match.group(1) or match.group(2)
             if re.match(r"[a-z][a-z0-9+.-]*:", target):

@@ -6,6 +6,7 @@
 
 #include "examples/walker/gait.h"
 #include "hbar/adjoint/design/check_design_map.h"
+#include "hbar/adjoint/programs/transcribe.h"
 #include "hbar/core/scene/build_model.h"
 #include "hbar/core/scene/read_xml.h"
 #include "hbar/solvers/nlp/hessian_check.h"

@@ -94,8 +94,16 @@ TEST_P(BendingPattern, LeavesNothingOut) {
   }
 }
 
-/// Every entry but those by design variables and the initial state is non-zero at some of a few
-/// points. (The SDIRK2 inner stages, at which nothing is measured, have the pattern of the others.)
+/// Whether a variable is a translation: no second derivative by two of them is left but rounding,
+/// which may be none, as a displacement of everything changes no force.
+bool is_translation(const std::string& name) {
+  return name.starts_with("slider at ") || name.starts_with("base.x at ") ||
+         name.starts_with("base.y at ") || name.starts_with("base.z at ");
+}
+
+/// Every entry but those by design variables and the initial state, and between translations, is
+/// non-zero at some of a few points. (The SDIRK2 inner stages, at which nothing is measured, have
+/// the pattern of the others.)
 TEST_P(BendingPattern, NamesNoPairInVain) {
   AllAtOnce whole(GetParam().make(), kBending);
   const Eigen::Index n = whole.variables().start.size();
@@ -117,7 +125,8 @@ TEST_P(BendingPattern, NamesNoPairInVain) {
         whole.variables().names[static_cast<std::size_t>(pattern.columns[at])];
     const std::string& row = whole.variables().names[static_cast<std::size_t>(pattern.rows[at])];
     const bool within = column.find(" within ") != std::string::npos;
-    if (pattern.columns[at] >= designs && !column.starts_with("initial") && !within) {
+    if (pattern.columns[at] >= designs && !column.starts_with("initial") && !within &&
+        !(is_translation(row) && is_translation(column))) {
       EXPECT_GT(found[i], 0.0) << row << " and " << column;
     }
   }

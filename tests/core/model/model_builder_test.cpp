@@ -74,7 +74,7 @@ TEST(ModelBuilder, RefusesJointsThatCannotBe) {
           [](Joint& j) {
             j.kind = PrismaticJoint{{0.0, kNan, 1.0}};
           },
-          "axis is (  0 nan   1); it must be a non-zero vector"),
+          "axis is (0 nan 1); it must be a non-zero vector"),
       bad_joint(
           [](Joint& j) {
             j.kind = PlanarJoint{{1.0, 0.0, 0.0}, {-2.0, 0.0, 0.0}};
@@ -135,14 +135,14 @@ TEST(ModelBuilder, RefusesBodiesThatCannotBe) {
           [](Body& b) {
             b.inertia = {1.0, kNan, 1.0};
           },
-          "principal moments are (  1 nan   1); they must be positive"),
+          "principal moments are (1 nan 1); they must be positive"),
       bad_body([](Body& b) { b.contact_points = Eigen::Matrix3Xd::Constant(3, 1, kNan); },
                "its contact points must be finite"),
       bad_body(
           [](Body& b) {
             b.inertia = {1.0, 1.0, 2.5};
           },
-          "principal moments are (  1   1 2.5); none may exceed the sum of the other two"),
+          "principal moments are (1 1 2.5); none may exceed the sum of the other two"),
   });
 }
 

@@ -392,7 +392,7 @@ TEST(ApplyParameters, RefusesVectorsAndBodiesThatCannotBe) {
   EXPECT_EQ(message("body.shin.inertia", Eigen::Vector3d(1.0, 1.0, 3.0)),
             "body.shin.inertia is (1 1 3" + moments);
   EXPECT_EQ(message("body.shin.inertia", Eigen::Vector3d(1.0, -1.0, 1.0)),
-            "body.shin.inertia is ( 1 -1  1" + moments);
+            "body.shin.inertia is (1 -1 1" + moments);
 }
 
 }  // namespace
