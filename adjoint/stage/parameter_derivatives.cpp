@@ -8,11 +8,11 @@
 namespace hbar {
 namespace {
 
-/// Wrenches ∂F/∂m and ∂F/∂(principal moments) of a link's body, world.
+/// ∂F/∂m, and the torques of ∂F/∂(principal moments), which have no force, of a link's body, world.
 template <Scalar S>
 struct InertiaWrenches {
   Vector6<S> by_mass;
-  std::array<Vector6<S>, 3> by_moment;
+  Matrix3<S> torque_by_moment;  // a column each
 };
 
 template <Scalar S>
@@ -33,8 +33,7 @@ InertiaWrenches<S> inertia_wrenches(const Model& model, const Mechanism<S>& mech
   for (int k = 0; k < 3; ++k) {
     // Torque of a unit moment about body axis k: e (e·ω̇) + ω × e (e·ω).
     const Vector3<S> e = body.R.col(k);
-    const Vector3<S> torque = e * e.dot(w_dot) + w.cross(e) * e.dot(w);
-    out.by_moment[static_cast<std::size_t>(k)] = spatial<S>(torque, Vector3<S>::Zero());
+    out.torque_by_moment.col(k) = e * e.dot(w_dot) + w.cross(e) * e.dot(w);
   }
   return out;
 }
@@ -49,6 +48,11 @@ void add_parameter_gradient(const Applied<S>& applied, const StageResidual<S>& s
   const Motion<S>& motion = stage.motion();
   const Pullback<S>& pullback = stage.pullback();
   const double scale = factor * point.c();
+  const std::vector<Parameter>& parameters = applied.set.parameters();
+  const auto component = [&](int i) { return parameters[static_cast<std::size_t>(i)].component; };
+  int weighed = -1;  // the link of the two below: its mass and its moments follow each other
+  S by_mass(0.0);
+  Vector3<S> by_moments = Vector3<S>::Zero();
   for (const ParameterBlock& block : applied.set.blocks()) {
     const ParameterKindRow& kind = row_of(block.kind);
     switch (kind.effect) {
@@ -63,14 +67,16 @@ void add_parameter_gradient(const Applied<S>& applied, const StageResidual<S>& s
         break;
       }
       case ParameterEffect::kInertia: {
-        const auto wrenches = inertia_wrenches<S>(model, applied.mechanism, motion, block.owner);
-        const Vector6<S>& W = pullback.twist(model.node_of_link(block.owner));
-        const S by_mass = W.dot(wrenches.by_mass);
-        const Vector3<S> by_moments(W.dot(wrenches.by_moment[0]), W.dot(wrenches.by_moment[1]),
-                                    W.dot(wrenches.by_moment[2]));
+        if (weighed != block.owner) {
+          const auto wrenches = inertia_wrenches<S>(model, applied.mechanism, motion, block.owner);
+          const Vector6<S>& W = pullback.twist(model.node_of_link(block.owner));
+          by_mass = W.dot(wrenches.by_mass);
+          by_moments = wrenches.torque_by_moment.transpose() * W.template head<3>();
+          weighed = block.owner;
+        }
         for (int i = block.first; i < block.first + block.size; ++i) {
           const InertiaRate<S> rate = kind.actions<S>().inertia_rate(
-              model, applied.mechanism, block.owner, {applied.set[i].component, applied.p[i]});
+              model, applied.mechanism, block.owner, {component(i), applied.p[i]});
           grad[i] += scale * (by_mass * rate.mass + by_moments.dot(rate.moments));
         }
         break;
@@ -91,7 +97,7 @@ void add_parameter_gradient(const Applied<S>& applied, const StageResidual<S>& s
       }
       case ParameterEffect::kGravity:
         for (int i = block.first; i < block.first + block.size; ++i) {
-          grad[i] += scale * pullback.by_gravity()[applied.set[i].component];
+          grad[i] += scale * pullback.by_gravity()[component(i)];
         }
         break;
       case ParameterEffect::kContact:
@@ -193,9 +199,7 @@ void block_columns(const Applied<S>& applied, const StageResidual<S>& stage,
         const InertiaRate<S> rate = kind.actions<S>().inertia_rate(
             model, applied.mechanism, block.owner, {applied.set[i].component, applied.p[i]});
         Vector6<S> wrench = rate.mass * wrenches.by_mass;
-        for (std::size_t k = 0; k < 3; ++k) {
-          wrench += rate.moments[static_cast<Eigen::Index>(k)] * wrenches.by_moment[k];
-        }
+        wrench.template head<3>() += wrenches.torque_by_moment * rate.moments;
         path_column<S>(stage, block.owner, wrench, rows, column);
       });
       break;

@@ -8,9 +8,11 @@ template <Scalar S>
 FrameTwists<S> frame_twists(const Model& model, const Applied<S>& applied, const Motion<S>& motion,
                             const ParameterBlock& block) {
   Vector3<S> w = Vector3<S>::Zero();
+  const std::vector<Parameter>& parameters = applied.set.parameters();
   for (int i = block.first; i < block.first + block.size; ++i) {
-    if (applied.set[i].component < 3) {
-      w[applied.set[i].component] = applied.p[i];
+    const int k = parameters[static_cast<std::size_t>(i)].component;
+    if (k < 3) {
+      w[k] = applied.p[i];
     }
   }
   Matrix3<S> J_w;
@@ -41,8 +43,9 @@ void add_frame_gradient(const Model& model, const Applied<S>& applied, const Mot
   const Vector3<S> torque = covector.template head<3>() - twists.frame.p.cross(force);
   const Vector3<S> by_w = twists.J_w.transpose() * (twists.frame.R.transpose() * torque);
   const Vector3<S> by_t = twists.R_parent.transpose() * force;
+  const std::vector<Parameter>& parameters = applied.set.parameters();
   for (int i = block.first; i < block.first + block.size; ++i) {
-    const int k = applied.set[i].component;
+    const int k = parameters[static_cast<std::size_t>(i)].component;
     grad[i] += k < 3 ? by_w[k] : by_t[k - 3];
   }
 }

@@ -6,6 +6,7 @@
 
 #include "hbar/adjoint/stage/parameter_derivatives.h"
 #include "hbar/adjoint/terms/objective_terms.h"
+#include "hbar/adjoint/trajectory/history.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
@@ -103,7 +104,8 @@ Model grasp_model(bool contacts) {
 struct GraspWork::Workspace {
   explicit Workspace(const std::string& integrator)
       : horizon(grasp_model(), parameters(grasp_model()), options(integrator, true)),
-        bare(horizon.model(), horizon.parameters(), options(integrator, false)),
+        simulator(horizon),
+        bare(horizon.with(options(integrator, false))),
         model_without(grasp_model(false)),
         inputs(horizon.nominal_inputs()),
         adjoint(horizon),
@@ -153,7 +155,8 @@ struct GraspWork::Workspace {
   }
 
   Horizon horizon;
-  Horizon bare;
+  Simulator simulator;
+  Simulator bare;  // keeps nothing
   Model model_without;
   Inputs inputs;
   AdjointSweep adjoint;
@@ -173,14 +176,15 @@ GraspWork::GraspWork(const std::string& integrator)
     : work_(std::make_shared<Workspace>(integrator)) {
   forward();
   Workspace& w = *work_;
+  History history(w.horizon.model());
   for (int s = 1; s < w.trajectory.timeline.stage_count(); ++s) {
     w.points.emplace_back(w.horizon.model());
-    w.horizon.set_point(w.trajectory, s, w.points.back());
+    history.set_point(w.trajectory, s, w.points.back());
   }
 }
 
 void GraspWork::forward() {
-  work_->trajectory = simulate(work_->horizon, work_->inputs).trajectory();
+  work_->trajectory = work_->simulator.rollout(work_->inputs).trajectory();
 }
 
 void GraspWork::forward_alone() {

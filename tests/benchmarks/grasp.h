@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/core/model/model.h"
 
 namespace hbar::benchmarks {
 

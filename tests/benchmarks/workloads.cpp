@@ -90,7 +90,8 @@ RolloutWork::RolloutWork(const HingeModel& hinges, const Model& model,
                          const std::string& integrator, int parameters)
     : mujoco_(hinges, kStep),
       horizon_(model, first_parameters(model, parameters), simulation_options(integrator, true)),
-      bare_(model, first_parameters(model, parameters), simulation_options(integrator, false)),
+      simulator_(horizon_),
+      bare_(horizon_.with(simulation_options(integrator, false))),
       inputs_(horizon_.nominal_inputs()),
       adjoint_(horizon_),
       objective_(squared_variables()) {
@@ -105,7 +106,7 @@ RolloutWork::RolloutWork(const HingeModel& hinges, const Model& model,
   forward();
 }
 
-void RolloutWork::forward() { trajectory_ = simulate(horizon_, inputs_).trajectory(); }
+void RolloutWork::forward() { trajectory_ = simulator_.rollout(inputs_).trajectory(); }
 
 void RolloutWork::forward_alone() {
   const Rollout rollout = bare_.rollout(inputs_);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "hbar/adjoint/derivatives/gradient.h"
+#include "hbar/adjoint/stage/stage_residual.h"
+#include "hbar/adjoint/trajectory/simulator.h"
 #include "tests/benchmarks/mujoco_model.h"
 
 namespace hbar::benchmarks {
@@ -65,7 +67,8 @@ class RolloutWork {
 
   MujocoModel mujoco_;
   Horizon horizon_;
-  Horizon bare_;
+  Simulator simulator_;
+  Simulator bare_;  // keeps nothing
   Inputs inputs_;
   AdjointSweep adjoint_;
   Objective objective_;
