@@ -35,6 +35,6 @@ tests/install_packages.sh build
 launcher=
 ! command -v ccache >/dev/null || launcher=-DCMAKE_CXX_COMPILER_LAUNCHER=ccache
 cmake --preset release -DHBAR_BUILD_TESTS=OFF $launcher
-cmake --build --preset release --target "$example"
+cmake --build --preset release --target "$example" --parallel "$(nproc)"
 mkdir -p "results/$example"
 exec "build/release/examples/$folder/$example" --out "results/$example" "$@"

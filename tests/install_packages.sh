@@ -1,7 +1,8 @@
 #!/bin/sh
-# Installs the Debian and Ubuntu packages that hbar needs: tests/install_packages.sh build|test
+# Installs the Debian and Ubuntu packages that hbar needs: tests/install_packages.sh build|test|full
 #
-# `build` is what the library and its examples need, `test` adds what the tests need. Nothing is
+# `build` is what the library and its examples need, `test` adds what the tests need, `full`
+# what the benchmarks need. Nothing is
 # downloaded, and no network is needed, when all of it is there. Needs root or sudo otherwise.
 set -eu
 
@@ -49,7 +50,8 @@ choose() {
 case ${1:-} in
   build) wanted=$build; optional= ;;
   test) wanted="$build $test" ;;
-  *) echo "usage: install_packages.sh build|test" >&2; exit 2 ;;
+  full) wanted="$build $test libbenchmark-dev" ;;
+  *) echo "usage: install_packages.sh build|test|full" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then

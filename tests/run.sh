@@ -4,6 +4,8 @@
 #   tests/run.sh                 release build, checkers, tests, a stranger's project
 #   tests/run.sh --dev           and the same tests under address and undefined-behaviour sanitizers
 #   tests/run.sh --tsan          and under the thread sanitizer
+#   tests/run.sh --full          and all of it, without the optional components as well; the benchmarks
+#                                are built
 #   tests/run.sh --no-install    install no packages
 #
 # Ends with ctest's closing line over all of it, and exits with 0 only if everything passed.
@@ -11,22 +13,36 @@ cd "$(dirname "$0")/.." || exit 2
 
 install=yes
 presets=release
+full=no
 for option in "$@"; do
   case $option in
     --dev) presets="$presets dev" ;;
     --tsan) presets="$presets tsan" ;;
+    --full) presets="release bare dev tsan"; full=yes ;;
     --no-install) install=no ;;
-    *) sed -n '2,9s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+    *) sed -n '2,11s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
   esac
 done
 
 passed=0
 failed=0
 
+# What --full adds to the presets chosen.
+left_out() {
+  for preset in bare dev tsan; do
+    case " $presets " in
+      *" $preset "*) ;;
+      *) printf '%s build, ' "$preset" ;;
+    esac
+  done
+  echo "build of the benchmarks"
+}
+
 finish() {
   total=$((passed + failed))
   [ "$total" -gt 0 ] || { total=1; failed=1; }
   echo
+  [ "$full" = yes ] || echo "not run: $(left_out) (tests/run.sh --full)"
   echo "$((100 * (total - failed) / total))% tests passed, $failed tests failed out of $total"
   [ "$failed" -eq 0 ]
   exit
@@ -57,7 +73,9 @@ run_tests() {
   passed=$((passed + ${all:-0} - ${bad:-0}))
 }
 
-[ "$install" = no ] || step tests/install_packages.sh test
+kind=test
+[ "$full" = no ] || kind=full
+[ "$install" = no ] || step tests/install_packages.sh $kind
 
 launcher=
 ! command -v ccache >/dev/null || launcher=-DCMAKE_CXX_COMPILER_LAUNCHER=ccache
@@ -67,4 +85,9 @@ for preset in $presets; do
   step cmake --build --preset "$preset" --parallel "$(nproc)"
   run_tests "$preset"
 done
+if [ "$full" = yes ]; then
+  step cmake --preset release -DHBAR_BUILD_BENCHMARKS=ON
+  step cmake --build --preset release --parallel "$(nproc)" --target hbar_benchmarks
+  step cmake --preset release -DHBAR_BUILD_BENCHMARKS=OFF
+fi
 finish
