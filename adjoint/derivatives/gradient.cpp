@@ -1,8 +1,10 @@
 #include "hbar/adjoint/derivatives/gradient.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "hbar/adjoint/derivatives/backward_sweep.h"
+#include "hbar/adjoint/trajectory/check_trajectory.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 
@@ -83,7 +85,8 @@ void AdjointSweep::Workspace::solve_block(const Trajectory& trajectory, int s,
   z_bar.col(s - 1) = z;
 }
 
-AdjointSweep::AdjointSweep(const Horizon& horizon) : work_(std::make_unique<Workspace>(horizon)) {}
+AdjointSweep::AdjointSweep(const Horizon& horizon)
+    : work_("AdjointSweep", std::make_unique<Workspace>(horizon)) {}
 AdjointSweep::~AdjointSweep() = default;
 AdjointSweep::AdjointSweep(AdjointSweep&&) noexcept = default;
 AdjointSweep& AdjointSweep::operator=(AdjointSweep&&) noexcept = default;
@@ -94,6 +97,7 @@ int AdjointSweep::refactorized() const { return work_->refactorized; }
 
 Gradient AdjointSweep::pull_back(const Trajectory& trajectory, const TrajectoryPartials& partials) {
   Workspace& w = *work_;
+  require_whole_trajectory_of(w.horizon, trajectory);
   w.z_bar.resize(w.horizon.model().dof(), trajectory.timeline.last_stage());
   w.worst_residual = 0.0;
   w.refactorized = 0;

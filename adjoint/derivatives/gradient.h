@@ -1,8 +1,7 @@
 #pragma once
 
-#include <memory>
-
 #include "hbar/adjoint/terms/objective.h"
+#include "hbar/core/base/owned.h"
 
 namespace hbar {
 
@@ -35,6 +34,7 @@ class AdjointSweep {
   AdjointSweep& operator=(AdjointSweep&&) noexcept;
 
   /// @param trajectory  complete, of this horizon
+  /// @throws InvalidInput for a trajectory of another horizon, or a part of one
   /// @throws NumericalFailure if a stage's block is singular or its residual stays above 1e-11
   [[nodiscard]] Gradient gradient(const Trajectory& trajectory, const Objective& objective);
 
@@ -51,7 +51,7 @@ class AdjointSweep {
 
  private:
   struct Workspace;
-  std::unique_ptr<Workspace> work_;
+  Owned<Workspace> work_;
 };
 
 /// dΨ of a trajectory: one AdjointSweep.

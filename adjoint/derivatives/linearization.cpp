@@ -1,5 +1,7 @@
 #include "hbar/adjoint/derivatives/linearization.h"
 
+#include <memory>
+
 #include "hbar/adjoint/stage/parameter_derivatives.h"
 #include "hbar/adjoint/trajectory/flat_stencil.h"
 #include "hbar/adjoint/trajectory/history.h"
@@ -227,7 +229,8 @@ void Linearizer::Workspace::fill_stage(const Trajectory& trajectory, int s) {
   fill_controls(trajectory, s);
 }
 
-Linearizer::Linearizer(const Horizon& horizon) : work_(std::make_unique<Workspace>(horizon)) {}
+Linearizer::Linearizer(const Horizon& horizon)
+    : work_("Linearizer", std::make_unique<Workspace>(horizon)) {}
 Linearizer::~Linearizer() = default;
 Linearizer::Linearizer(Linearizer&&) noexcept = default;
 Linearizer& Linearizer::operator=(Linearizer&&) noexcept = default;
@@ -236,6 +239,7 @@ int Linearizer::pattern_count() const { return work_->pattern_count; }
 
 const Linearization& Linearizer::linearize(const Trajectory& trajectory) {
   Workspace& w = *work_;
+  require_whole_trajectory_of(w.horizon, trajectory);
   if (w.pattern_count == 0 || !(w.timeline == trajectory.timeline)) {
     w.lay_out(trajectory.timeline);
   }

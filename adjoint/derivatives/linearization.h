@@ -1,9 +1,9 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "hbar/adjoint/derivatives/block_matrix.h"
+#include "hbar/core/base/owned.h"
 
 namespace hbar {
 
@@ -39,7 +39,7 @@ class Linearizer {
 
  private:
   struct Workspace;
-  std::unique_ptr<Workspace> work_;
+  Owned<Workspace> work_;
 };
 
 }  // namespace hbar

@@ -1,5 +1,6 @@
 #include "hbar/adjoint/derivatives/second_order.h"
 
+#include <memory>
 #include <utility>
 
 #include "hbar/adjoint/derivatives/backward_sweep.h"
@@ -54,7 +55,7 @@ struct SecondOrderSweep::Workspace {
         a_past(h.model().dof()),
         delta(h.model().dof()) {}
 
-  [[nodiscard]] const Trajectory& trajectory() const { return *trajectory_; }
+  [[nodiscard]] const Trajectory& trajectory() const;
   [[nodiscard]] Applied<Dual> applied() const { return {mechanism_d, horizon.parameters(), p_d}; }
   void factorize();
   void set_stage(int s);
@@ -64,7 +65,9 @@ struct SecondOrderSweep::Workspace {
   Horizon horizon;
   AdjointSweep adjoint;
   BackwardSweep<Dual> sweep;
-  const Trajectory* trajectory_ = nullptr;
+  Trajectory trajectory_;  // a copy, which nobody takes away
+  bool has_point = false;
+  bool has_direction = false;
   TrajectoryPartials weights{TrajectoryValues{}};
   Gradient gradient;
   StageResidual<double> stage;
@@ -89,14 +92,21 @@ struct SecondOrderSweep::Workspace {
 
 /// Factors of every stage's block at the trajectory itself, so that no solve needs refinement.
 void SecondOrderSweep::Workspace::factorize() {
-  const int last = trajectory().timeline.last_stage();
+  const int last = trajectory_.timeline.last_stage();
   factors.resize(static_cast<std::size_t>(last) + 1);
   for (int s = 1; s <= last; ++s) {
-    history.set_point(trajectory(), s, point);
-    stage.linearize(*trajectory().mechanism, point, g);
+    history.set_point(trajectory_, s, point);
+    stage.linearize(*trajectory_.mechanism, point, g);
     stage.newton_matrix(block);
     factors[static_cast<std::size_t>(s)].compute(block);
   }
+}
+
+const Trajectory& SecondOrderSweep::Workspace::trajectory() const {
+  if (!has_point) {
+    throw InvalidInput("second order: there is no point yet; call set_point first");
+  }
+  return trajectory_;
 }
 
 /// The stage's point with the slopes that are known so far.
@@ -139,7 +149,7 @@ void SecondOrderSweep::Workspace::solve_adjoint(int s, const VectorX<Dual>& y,
 }
 
 SecondOrderSweep::SecondOrderSweep(const Horizon& horizon)
-    : work_(std::make_unique<Workspace>(horizon)) {}
+    : work_("SecondOrderSweep", std::make_unique<Workspace>(horizon)) {}
 SecondOrderSweep::~SecondOrderSweep() = default;
 SecondOrderSweep::SecondOrderSweep(SecondOrderSweep&&) noexcept = default;
 SecondOrderSweep& SecondOrderSweep::operator=(SecondOrderSweep&&) noexcept = default;
@@ -147,12 +157,16 @@ SecondOrderSweep& SecondOrderSweep::operator=(SecondOrderSweep&&) noexcept = def
 const Gradient& SecondOrderSweep::set_point(const Trajectory& trajectory,
                                             const TrajectoryPartials& weights) {
   Workspace& w = *work_;
-  w.trajectory_ = &trajectory;
-  w.weights = weights;
+  w.has_point = w.has_direction = false;
   w.gradient = w.adjoint.pull_back(trajectory, weights);
+  w.trajectory_ = trajectory;
+  w.weights = weights;
   w.factorize();
+  w.has_point = true;
   return w.gradient;
 }
+
+const Trajectory& SecondOrderSweep::trajectory() const { return work_->trajectory(); }
 
 const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
   Workspace& w = *work_;
@@ -188,17 +202,22 @@ const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
   for (int k = 0; k <= steps; ++k) {
     w.read_values(k);
   }
+  w.has_direction = true;
   return w.tangent;
 }
 
 const Gradient& SecondOrderSweep::product(const TrajectoryPartials* weights_tangent) {
   Workspace& w = *work_;
+  const Trajectory& trajectory = w.trajectory();
+  if (!w.has_direction) {
+    throw InvalidInput("second order: there is no direction yet; call push_forward first");
+  }
   const TrajectoryPartials& y = w.weights;
   const TrajectoryPartials still(w.tangent);
   const TrajectoryPartials& dy = weights_tangent != nullptr ? *weights_tangent : still;
   const Applied<Dual> applied = w.applied();
   w.sweep.run(
-      {w.trajectory(), applied, w.q_d, w.qdot_d, w.u_d},
+      {trajectory, applied, w.q_d, w.qdot_d, w.u_d},
       {dual_matrix(y.q, dy.q), dual_matrix(y.qdot, dy.qdot), dual_matrix(y.measured, dy.measured),
        dual_matrix(y.u, dy.u), dual_vector(y.p, dy.p)},
       [&](int s, const VectorX<Dual>& of, StageResidual<Dual>& at, VectorX<Dual>& z) {
@@ -215,7 +234,6 @@ HessianProduct::HessianProduct(const Horizon& horizon, Objective objective)
     : reader_(horizon), objective_(std::move(objective)), sweep_(horizon), adjoint_(horizon) {}
 
 const Gradient& HessianProduct::set_point(const Trajectory& trajectory) {
-  trajectory_ = &trajectory;
   values_ = reader_.values(trajectory);
   places_ = objective_.second_places(values_);
   second_ = objective_.second_partials(values_);
@@ -232,7 +250,7 @@ const Gradient& HessianProduct::along(const Inputs& direction, solvers::HessianK
   TrajectoryPartials moved(values_);
   add_second_order(places_, second_, tangent, moved);
   product_ = kind == solvers::HessianKind::kExact ? sweep_.product(&moved)
-                                                  : adjoint_.pull_back(*trajectory_, moved);
+                                                  : adjoint_.pull_back(sweep_.trajectory(), moved);
   product_.value = 0.5 * (product_.p.dot(direction.p) + product_.u.cwiseProduct(direction.u).sum() +
                           product_.q0.dot(direction.q0) + product_.qdot0.dot(direction.qdot0));
   return product_;

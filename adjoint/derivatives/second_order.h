@@ -4,6 +4,7 @@
 #include "hbar/adjoint/terms/value_access.h"
 #include "hbar/adjoint/trajectory/inputs.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
+#include "hbar/core/base/owned.h"
 #include "hbar/solvers/nlp/nlp.h"
 
 namespace hbar {
@@ -28,9 +29,9 @@ class SecondOrderSweep {
   /// Takes a trajectory and weights y on its values. Costs one adjoint sweep and a factorisation of
   /// every stage's block.
   ///
-  /// @param trajectory  complete, of this horizon; must outlive the products
+  /// @param trajectory  complete, of this horizon; copied
   /// @returns           d(y·values)/d(inputs), without the value
-  /// @throws NumericalFailure as AdjointSweep::pull_back
+  /// @throws InvalidInput, NumericalFailure as AdjointSweep::pull_back
   const Gradient& set_point(const Trajectory& trajectory, const TrajectoryPartials& weights);
 
   /// Tangent of the trajectory's values along a direction of the inputs; the next product uses the
@@ -38,17 +39,23 @@ class SecondOrderSweep {
   ///
   /// @param direction  shaped like the inputs
   /// @returns          valid until the next call
+  /// @throws InvalidInput without a point, or for a direction of another shape
   const ValueTangent& push_forward(const Inputs& direction);
 
   /// Change of d(y·values)/d(inputs) along the direction of the last push_forward.
   ///
   /// @param weights_tangent  δy along that direction; null means that y is constant
   /// @returns                valid until the next call
+  /// @throws InvalidInput without a point or a direction
   const Gradient& product(const TrajectoryPartials* weights_tangent = nullptr);
+
+  /// That of the last set_point.
+  /// @throws InvalidInput if there was none
+  [[nodiscard]] const Trajectory& trajectory() const;
 
  private:
   struct Workspace;
-  std::unique_ptr<Workspace> work_;
+  Owned<Workspace> work_;
 };
 
 /// Hessian-vector products, exact or Gauss-Newton, of one objective at one trajectory.
@@ -59,7 +66,7 @@ class HessianProduct {
   /// @throws InvalidInput if a term of the objective has no second partials, naming it
   HessianProduct(const Horizon& horizon, Objective objective);
 
-  /// @param trajectory  complete, of this horizon; must outlive the products
+  /// @param trajectory  complete, of this horizon; copied
   /// @returns           Ψ and its gradient there
   const Gradient& set_point(const Trajectory& trajectory);
 
@@ -70,7 +77,7 @@ class HessianProduct {
   /// @param kind       kExact or kGaussNewton
   /// @returns          shaped like a gradient, value = ½ directionᵀ H direction; valid until the
   ///                   next call
-  /// @throws InvalidInput for a direction of another shape, or kLimitedMemory
+  /// @throws InvalidInput for a direction of another shape, kLimitedMemory, or without a point
   const Gradient& along(const Inputs& direction,
                         solvers::HessianKind kind = solvers::HessianKind::kExact);
 
@@ -79,7 +86,6 @@ class HessianProduct {
   Objective objective_;
   SecondOrderSweep sweep_;
   AdjointSweep adjoint_;  // of products without curvature
-  const Trajectory* trajectory_ = nullptr;
   TrajectoryValues values_;
   Gradient gradient_;
   Gradient product_;

@@ -1,6 +1,7 @@
 #include "hbar/adjoint/derivatives/stage_weights.h"
 
 #include "hbar/adjoint/outputs/measurements.h"
+#include "hbar/adjoint/trajectory/check_trajectory.h"
 #include "hbar/adjoint/trajectory/flat_stencil.h"
 #include "hbar/adjoint/trajectory/horizon.h"
 
@@ -27,6 +28,7 @@ void add_rate_weights(const Model& model, const Trajectory& trajectory, int s,
 
 StageWeights stage_weights(const Horizon& horizon, const Trajectory& trajectory,
                            const TrajectoryPartials& partials) {
+  require_whole_trajectory_of(horizon, trajectory);
   const Model& model = horizon.model();
   StageWeights out{Eigen::MatrixXd::Zero(model.dof(), trajectory.timeline.stage_count()),
                    Eigen::VectorXd::Zero(model.dof()), partials.p, partials.u};

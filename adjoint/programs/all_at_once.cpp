@@ -21,6 +21,8 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 Trajectory empty_trajectory(const Horizon& horizon) {
   const SimulationOptions& options = horizon.options();
   Trajectory out;
+  out.model = horizon.shared_model();
+  out.parameters = horizon.parameters();
   out.timeline = even_timeline(horizon.integrator(), options.h, options.steps, options.restarts);
   out.q.setZero(horizon.model().dof(), out.timeline.stage_count());
   out.qdot.setZero(horizon.model().dof(), out.timeline.stage_count());

@@ -28,11 +28,15 @@ void append(solvers::NlpVariables& all, const Eigen::VectorXd& start, const Eige
 }
 
 void require_map(const TrajectoryProblem& problem) {
-  const Eigen::Index count = problem.map == nullptr ? 0 : problem.map->parameter_count();
-  if (problem.map == nullptr || count != problem.horizon.parameters().size()) {
+  require_given("TrajectoryProblem", "map from designs to parameters", problem.map);
+  const Eigen::Index count = problem.map->parameter_count();
+  if (count != problem.horizon.parameters().size()) {
     throw InvalidInput(concat("TrajectoryProblem: the map has ", count,
                               " parameters; the horizon has ",
                               problem.horizon.parameters().size()));
+  }
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    require_given("TrajectoryProblem", concat("constraint ", i), problem.constraints[i]);
   }
 }
 

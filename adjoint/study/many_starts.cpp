@@ -288,6 +288,7 @@ std::mt19937_64 job_random(std::uint64_t seed, int index) {
 }
 
 JobReport run_jobs(const JobOptions& options, const Job& job) {
+  require_given("run_jobs", "job", job);
   check_job_options(options);
   JobReport report = earlier_jobs(options);
   std::vector<int> waiting;

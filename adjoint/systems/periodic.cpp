@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "hbar/adjoint/derivatives/factorized_linearization.h"
 #include "hbar/adjoint/derivatives/stage_weights.h"
@@ -121,7 +122,7 @@ std::string PeriodicSolver::Workspace::failure_message(const solvers::NewtonRepo
 }
 
 PeriodicSolver::PeriodicSolver(const Horizon& horizon, PeriodicOptions options)
-    : work_(std::make_unique<Workspace>(horizon, std::move(options))) {}
+    : work_("PeriodicSolver", std::make_unique<Workspace>(horizon, std::move(options))) {}
 PeriodicSolver::~PeriodicSolver() = default;
 PeriodicSolver::PeriodicSolver(PeriodicSolver&&) noexcept = default;
 PeriodicSolver& PeriodicSolver::operator=(PeriodicSolver&&) noexcept = default;

@@ -2,6 +2,7 @@
 
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/trajectory/trajectory.h"
+#include "hbar/core/base/owned.h"
 #include "hbar/solvers/linear/cached_solver.h"
 
 namespace hbar {
@@ -60,7 +61,7 @@ class PeriodicSolver {
 
  private:
   struct Workspace;
-  std::unique_ptr<Workspace> work_;
+  Owned<Workspace> work_;
 };
 
 /// One orbit: PeriodicSolver::solve.

@@ -225,6 +225,8 @@ ConstraintPointer linear_constraint(ConstraintRows rows, std::vector<PartialPlac
 ConstraintPointer user_constraint(ConstraintRows rows, std::vector<PartialPlace> places,
                                   Write values, Write partials,
                                   std::optional<RowSecondPartials> second) {
+  require_given("user_constraint", "function of its values", values);
+  require_given("user_constraint", "function of its partials", partials);
   if (second && !second->places.empty() && !second->partials) {
     throw InvalidInput("user_constraint: there are second places but no function for them");
   }

@@ -7,6 +7,7 @@
 
 #include "hbar/adjoint/trajectory/trajectory_values.h"
 #include "hbar/adjoint/trajectory/value_place.h"
+#include "hbar/core/base/error.h"
 
 namespace hbar {
 
@@ -47,9 +48,12 @@ class ObjectiveTerm {
 class Objective {
  public:
   Objective() = default;
+  /// @throws InvalidInput for a null pointer, as add
   explicit Objective(std::shared_ptr<const ObjectiveTerm> term) { add(std::move(term)); }
 
+  /// @throws InvalidInput for a null pointer
   Objective& add(std::shared_ptr<const ObjectiveTerm> term) {
+    require_given("objective", "term", term);
     terms_.push_back(std::move(term));
     return *this;
   }

@@ -184,6 +184,8 @@ TermPointer plain_sum(const char* name, StepSum sum) {
 
 TermPointer user_term(std::string name, Value value, AddPartials add_partials,
                       TermSecondPartials second) {
+  require_given(concat("user_term '", name, "'"), "function of its value", value);
+  require_given(concat("user_term '", name, "'"), "function of its partials", add_partials);
   if (static_cast<bool>(second.places) != static_cast<bool>(second.partials)) {
     throw InvalidInput(
         concat("user_term '", name, "': give second places and second partials, ", "or neither"));

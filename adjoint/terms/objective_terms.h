@@ -113,7 +113,7 @@ struct TermSecondPartials {
 /// check_gradient tell whether they agree). generic_term needs only a formula.
 ///
 /// @param second  for exact Hessians; without it second_places() throws InvalidInput
-/// @throws InvalidInput if only one of the two functions of `second` is given
+/// @throws InvalidInput if a function is empty, or only one of the two of `second` is given
 [[nodiscard]] TermPointer user_term(
     std::string name, std::function<double(const TrajectoryValues&)> value,
     std::function<void(const TrajectoryValues&, TrajectoryPartials&)> add_partials,

@@ -153,6 +153,7 @@ class SeparableTerm final : public ObjectiveTerm {
 
 StepWeights StepWeights::over_time(int steps, double h,
                                    const std::function<double(double)>& weight) {
+  require_given("StepWeights", "function of time", weight);
   if (steps < 1) {
     throw InvalidInput(concat("StepWeights: steps is ", steps, "; it must be ≥ 1"));
   }
@@ -186,6 +187,7 @@ TermPointer separable_term(std::string name, std::vector<StepSum> sums,
       throw InvalidInput(concat(name, ": weight and target must be finite"));
     }
   }
+  require_given(name, "function phi", phi);
   return std::make_shared<SeparableTerm>(std::move(name), std::move(sums), std::move(phi), linear);
 }
 

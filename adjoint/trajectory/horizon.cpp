@@ -20,8 +20,22 @@ void check_options(const Model& model, const SimulationOptions& options) {
   if (!(options.h > 0.0) || !std::isfinite(options.h)) {
     throw InvalidInput(concat("time step h is ", options.h, "; it must be positive"));
   }
+  if (options.h < kSmallestStep || options.h > 1.0 / kSmallestStep) {
+    throw InvalidInput(concat("time step h is ", options.h, "; it must be between ", kSmallestStep,
+                              " and ", 1.0 / kSmallestStep, ": its square must be a number"));
+  }
   if (options.steps < 1) {
     throw InvalidInput(concat("steps is ", options.steps, "; it must be at least 1"));
+  }
+  const solvers::NewtonOptions& newton = options.newton;
+  if (!(newton.tol > 0.0 && newton.rtol > 0.0) || !std::isfinite(newton.tol) ||
+      !std::isfinite(newton.rtol) || newton.max_iter < 1 || newton.max_ls < 0 ||
+      options.max_halvings < 0 || !(options.max_memory > 0.0)) {
+    throw InvalidInput(concat("newton: tol is ", newton.tol, ", rtol ", newton.rtol, ", max_iter ",
+                              newton.max_iter, ", max_ls ", newton.max_ls, ", max_halvings ",
+                              options.max_halvings, ", max_memory ", options.max_memory,
+                              "; tolerances and memory must be positive, tolerances finite, "
+                              "max_iter at least 1 and the others not negative"));
   }
   for (const int step : options.restarts) {
     if (step < 0 || step >= options.steps) {
@@ -64,6 +78,10 @@ Horizon::Horizon(Model model, ParameterSet parameters, SimulationOptions options
 
 Horizon::Horizon(std::shared_ptr<const Model> model, ParameterSet parameters,
                  SimulationOptions options) {
+  if (model == nullptr) {
+    throw InvalidInput("horizon: there is no model (a null pointer)");
+  }
+  require_parameters_of(*model, parameters);
   Data data{.model = std::move(model),
             .parameters = std::move(parameters),
             .options = std::move(options),

@@ -16,6 +16,9 @@ namespace hbar {
 
 struct Integrator;
 
+/// The least time step, of which any part of one is: rates go with 1 / h².
+inline constexpr double kSmallestStep = 1e-120;
+
 /// How to simulate.
 struct SimulationOptions {
   std::string integrator = "bdf1";  ///< a name of integrators()
@@ -36,14 +39,20 @@ struct SimulationOptions {
 /// The set-up of a trajectory: a model, its free parameters, and how to simulate it. Everything
 /// that computes trajectories, their values or their derivatives is constructed from one.
 ///
-/// Immutable. Copies share their data and are cheap; any number of threads may read one.
+/// Immutable. Copies share their data and are cheap, and so a move is a copy; any number of threads
+/// may read one.
 class Horizon {
  public:
-  /// @throws InvalidInput for an unknown integrator, h or steps that are not positive, a horizon
-  ///         that would not fit into options.max_memory, or measurements that the model cannot have
+  /// @throws InvalidInput for no model, parameters of another model, an unknown integrator, h or
+  ///         steps that are not positive, a horizon that would not fit into options.max_memory, or
+  ///         measurements that the model cannot have
   Horizon(Model model, ParameterSet parameters, SimulationOptions options);
   /// The same for a shared model.
   Horizon(std::shared_ptr<const Model> model, ParameterSet parameters, SimulationOptions options);
+
+  Horizon(const Horizon&) = default;
+  Horizon& operator=(const Horizon&) = default;
+  ~Horizon() = default;
 
   /// The same model and parameters with other options.
   /// @throws InvalidInput as the constructors

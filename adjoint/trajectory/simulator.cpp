@@ -1,6 +1,7 @@
 #include "hbar/adjoint/trajectory/simulator.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "hbar/adjoint/trajectory/history.h"
@@ -124,7 +125,7 @@ struct Simulator::Workspace {
 };
 
 Simulator::Simulator(Horizon horizon)
-    : horizon_(std::move(horizon)), work_(std::make_unique<Workspace>(horizon_)) {}
+    : horizon_(std::move(horizon)), work_("Simulator", std::make_unique<Workspace>(horizon_)) {}
 Simulator::~Simulator() = default;
 Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
@@ -138,6 +139,8 @@ Rollout Simulator::rollout(const Inputs& inputs) {
       static_cast<Eigen::Index>((options.restarts.size() + 1) *
                                 find_integrator(horizon_.integrator().starter).stages.size());
   Trajectory trajectory;
+  trajectory.model = horizon_.shared_model();
+  trajectory.parameters = horizon_.parameters();
   trajectory.inputs = inputs;
   trajectory.mechanism = horizon_.mechanism(inputs.p);
   work_->system.mechanism = trajectory.mechanism.get();
@@ -200,7 +203,7 @@ bool Simulator::advance(Trajectory& trajectory, int step, double h, int depth,
       continue;
     }
     trajectory.timeline.truncate(kept);
-    return depth < horizon_.options().max_halvings &&
+    return depth < horizon_.options().max_halvings && 0.5 * h >= kSmallestStep &&
            advance(trajectory, step, 0.5 * h, depth + 1, report) &&
            advance(trajectory, step, 0.5 * h, depth + 1, report);
   }

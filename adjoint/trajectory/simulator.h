@@ -1,11 +1,11 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <utility>
 
 #include "hbar/adjoint/trajectory/horizon.h"
 #include "hbar/adjoint/trajectory/trajectory.h"
+#include "hbar/core/base/owned.h"
 
 namespace hbar {
 
@@ -70,7 +70,7 @@ class Simulator {
                                             const RolloutReport& report) const;
 
   Horizon horizon_;
-  std::unique_ptr<Workspace> work_;
+  Owned<Workspace> work_;
 };
 
 /// Simulates once with a temporary Simulator.

@@ -7,12 +7,10 @@
 #include "hbar/adjoint/trajectory/inputs.h"
 #include "hbar/adjoint/trajectory/timeline.h"
 #include "hbar/core/base/scalar.h"
+#include "hbar/core/parameters/parameters.h"
 #include "hbar/solvers/newton/newton.h"
 
 namespace hbar {
-
-template <Scalar S>
-struct Mechanism;
 
 /// From stage + 1 on, the exponential coordinates of `node` are in the other chart (chart.h).
 struct ChartSwitch {
@@ -22,6 +20,8 @@ struct ChartSwitch {
 
 /// A computed trajectory q̄: the coordinates and rates of every stage, and what later passes reuse.
 struct Trajectory {
+  std::shared_ptr<const Model> model;  ///< whose it is
+  ParameterSet parameters;             ///< of inputs.p
   Timeline timeline;
   Inputs inputs;  ///< what it was computed from
   /// The model's numbers with inputs.p applied, computed once for all that read the trajectory.

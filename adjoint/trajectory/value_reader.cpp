@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "hbar/adjoint/trajectory/check_trajectory.h"
+
 namespace hbar {
 
 ValueReader::ValueReader(Horizon horizon)
@@ -13,6 +15,7 @@ ValueReader::ValueReader(Horizon horizon)
       none_(Eigen::VectorXd::Zero(horizon_.model().dof())) {}
 
 TrajectoryValues ValueReader::values(const Trajectory& trajectory) {
+  require_trajectory_of(horizon_, trajectory);
   const int steps = trajectory.step_count();
   TrajectoryValues out;
   out.h = horizon_.options().h;
@@ -38,6 +41,7 @@ TrajectoryValues ValueReader::values(const Trajectory& trajectory) {
 
 std::vector<std::vector<ContactSummary>> ValueReader::contact_history(
     const Trajectory& trajectory) {
+  require_trajectory_of(horizon_, trajectory);
   const Model& model = horizon_.model();
   std::vector<std::vector<ContactSummary>> out;
   for (int k = 0; k <= trajectory.step_count(); ++k) {

@@ -36,4 +36,10 @@ std::string join(std::initializer_list<Piece> pieces) {
   return all;
 }
 
+void throw_index(const char* what, long i, long count) {
+  throw InvalidInput(count == 0
+                         ? concat("there is no ", what, " ", i, ", as there is none at all")
+                         : concat("there is no ", what, " ", i, "; they are 0 to ", count - 1));
+}
+
 }  // namespace hbar::detail

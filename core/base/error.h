@@ -68,6 +68,7 @@ class Piece {
 };
 
 [[nodiscard]] std::string join(std::initializer_list<Piece> pieces);
+[[noreturn]] void throw_index(const char* what, long i, long count);
 
 }  // namespace detail
 
@@ -75,6 +76,23 @@ class Piece {
 template <typename... Parts>
 [[nodiscard]] std::string concat(const Parts&... parts) {
   return detail::join({detail::Piece(parts)...});
+}
+
+/// @param given  a function or a pointer
+/// @throws InvalidInput if it is empty: "WHERE: there is no WHAT"
+template <typename Given>
+void require_given(std::string_view where, std::string_view what, const Given& given) {
+  if (!given) {
+    throw InvalidInput(concat(where, ": there is no ", what, " (it is empty or null)"));
+  }
+}
+
+/// @param what  "link", "parameter", …
+/// @throws InvalidInput if i is not in 0 … count − 1
+inline void require_index(const char* what, long i, long count) {
+  if (i < 0 || i >= count) {
+    detail::throw_index(what, i, count);
+  }
 }
 
 /// The entries of a range, as concat writes them, with blanks between.

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hbar/core/base/error.h"
 #include "hbar/core/geometry/point_clusters.h"
 #include "hbar/core/geometry/shape.h"
 #include "hbar/core/model/contact.h"
@@ -92,7 +93,9 @@ class Model {
   [[nodiscard]] const std::vector<Motor>& motors() const { return motors_; }
   [[nodiscard]] const std::vector<EndEffector>& end_effectors() const { return end_effectors_; }
   [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
+  /// @throws InvalidInput for an index that no contact has
   [[nodiscard]] const Contact& contact(int i) const {
+    require_index("contact", i, contact_count());
     return contacts_[static_cast<std::size_t>(i)];
   }
   [[nodiscard]] const std::vector<TactileSensor>& tactile_sensors() const {
@@ -108,7 +111,11 @@ class Model {
   [[nodiscard]] int tactile_count() const { return tactile_count_; }  ///< three per sensor point
   [[nodiscard]] int contact_count() const { return static_cast<int>(contacts_.size()); }
   [[nodiscard]] int link_count() const { return static_cast<int>(links_.size()); }
-  [[nodiscard]] const Link& link(int i) const { return links_[static_cast<std::size_t>(i)]; }
+  /// @throws InvalidInput for an index that no link has
+  [[nodiscard]] const Link& link(int i) const {
+    require_index("link", i, link_count());
+    return links_[static_cast<std::size_t>(i)];
+  }
 
   /// The contact points of a link's body in groups.
   [[nodiscard]] const PointClusters& point_clusters(int link) const {

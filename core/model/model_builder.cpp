@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hbar/core/base/error.h"
+#include "hbar/core/base/unit_vector.h"
 
 namespace hbar {
 namespace {
@@ -24,10 +25,9 @@ void require(bool condition, const std::string& message) {
 }
 
 void normalise(Eigen::Vector3d& axis, const std::string& where) {
-  const double length = axis.norm();
-  require(axis.allFinite() && length > 0.0,
+  require(axis.allFinite() && !axis.isZero(0.0),
           concat(where, ": axis is (", listed(axis), "); it must be a non-zero vector"));
-  axis /= length;
+  axis = unit_vector(axis);
 }
 
 /// Normalises the axes of a joint, where it has any.

@@ -32,6 +32,7 @@ struct Parameter {
   double nominal = 0.0;  ///< the model's own value; 0 for transformations
   double lower = 0.0;    ///< physical bound
   double upper = 0.0;
+  friend bool operator==(const Parameter&, const Parameter&) = default;
 };
 
 /// Scalars of one kind and owner that are contiguous in p.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <unordered_map>
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/base/nearest_name.h"
@@ -60,15 +61,17 @@ std::tuple<ParameterKind, int, ParameterKind> place(ParameterKind kind, int owne
 
 }  // namespace
 
-ParameterSet::ParameterSet(std::vector<Parameter> parameters) : parameters_(std::move(parameters)) {
-  for (int i = 0; i < size(); ++i) {
-    const Parameter& parameter = (*this)[i];
-    if (blocks_.empty() || blocks_.back().kind != parameter.kind ||
-        blocks_.back().owner != parameter.owner) {
-      blocks_.push_back({parameter.kind, parameter.owner, i, 0});
+ParameterSet::ParameterSet(std::vector<Parameter> parameters) {
+  Data data{std::move(parameters), {}};
+  for (int i = 0; i < static_cast<int>(data.parameters.size()); ++i) {
+    const Parameter& parameter = data.parameters[static_cast<std::size_t>(i)];
+    if (data.blocks.empty() || data.blocks.back().kind != parameter.kind ||
+        data.blocks.back().owner != parameter.owner) {
+      data.blocks.push_back({parameter.kind, parameter.owner, i, 0});
     }
-    ++blocks_.back().size;
+    ++data.blocks.back().size;
   }
+  data_ = std::make_shared<const Data>(std::move(data));
 }
 
 ParameterSet ParameterSet::all(const Model& model) { return ParameterSet(list_parameters(model)); }
@@ -127,17 +130,17 @@ int ParameterSet::find(std::string_view name) const {
 
 int ParameterSet::index(ParameterKind kind, int owner, int component) const {
   const auto block = std::lower_bound(
-      blocks_.begin(), blocks_.end(), place(kind, owner),
+      blocks().begin(), blocks().end(), place(kind, owner),
       [](const ParameterBlock& b, const auto& wanted) { return place(b.kind, b.owner) < wanted; });
-  if (block == blocks_.end() || block->kind != kind || block->owner != owner) {
+  if (block == blocks().end() || block->kind != kind || block->owner != owner) {
     return -1;
   }
-  const auto first = parameters_.begin() + block->first;
+  const auto first = parameters().begin() + block->first;
   const auto found = std::lower_bound(
       first, first + block->size, component,
       [](const Parameter& parameter, int wanted) { return parameter.component < wanted; });
   return found != first + block->size && found->component == component
-             ? static_cast<int>(found - parameters_.begin())
+             ? static_cast<int>(found - parameters().begin())
              : -1;
 }
 
@@ -154,9 +157,32 @@ Eigen::VectorXd gather(const std::vector<Parameter>& parameters, Field field) {
 
 }  // namespace
 
-Eigen::VectorXd ParameterSet::nominal() const { return gather(parameters_, &Parameter::nominal); }
-Eigen::VectorXd ParameterSet::lower() const { return gather(parameters_, &Parameter::lower); }
-Eigen::VectorXd ParameterSet::upper() const { return gather(parameters_, &Parameter::upper); }
+Eigen::VectorXd ParameterSet::nominal() const { return gather(parameters(), &Parameter::nominal); }
+Eigen::VectorXd ParameterSet::lower() const { return gather(parameters(), &Parameter::lower); }
+Eigen::VectorXd ParameterSet::upper() const { return gather(parameters(), &Parameter::upper); }
+
+void require_parameters_of(const Model& model, const ParameterSet& set) {
+  if (set.size() == 0) {
+    return;
+  }
+  const std::vector<Parameter> every = list_parameters(model);
+  std::unordered_map<std::string_view, const Parameter*> own;
+  for (const Parameter& parameter : every) {
+    own.emplace(parameter.name, &parameter);
+  }
+  for (const Parameter& parameter : set.parameters()) {
+    const auto found = own.find(parameter.name);
+    if (found == own.end()) {
+      throw InvalidInput(concat("the parameter set is of another model: '", model.name(),
+                                "' has no parameter '", parameter.name, "'"));
+    }
+    if (*found->second != parameter) {
+      throw InvalidInput(concat("the parameter set is of another model: ", parameter.name, " is ",
+                                parameter.nominal, " there and ", found->second->nominal, " in '",
+                                model.name(), "', or has another place or other bounds"));
+    }
+  }
+}
 
 template <Scalar S>
 void apply_parameters(const Model& model, const ParameterSet& set, const VectorView<S>& p,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,11 +12,14 @@ namespace hbar {
 
 /// Which parameters are free, and their order in the vector p: by kind, then by link (or motor) in
 /// file order, then by component. The single registry: everything that reads or writes p goes
-/// through it.
+/// through it. Immutable; copies share what they hold.
 class ParameterSet {
  public:
   /// No parameter.
-  ParameterSet() = default;
+  ParameterSet() : ParameterSet(std::vector<Parameter>()) {}
+  ParameterSet(const ParameterSet&) = default;
+  ParameterSet& operator=(const ParameterSet&) = default;
+  ~ParameterSet() = default;
 
   /// Every parameter of the model.
   [[nodiscard]] static ParameterSet all(const Model& model);
@@ -26,11 +30,13 @@ class ParameterSet {
   [[nodiscard]] static ParameterSet named(const Model& model,
                                           const std::vector<std::string>& names);
 
-  [[nodiscard]] int size() const { return static_cast<int>(parameters_.size()); }
-  [[nodiscard]] const std::vector<Parameter>& parameters() const { return parameters_; }
-  [[nodiscard]] const std::vector<ParameterBlock>& blocks() const { return blocks_; }
+  [[nodiscard]] int size() const { return static_cast<int>(parameters().size()); }
+  [[nodiscard]] const std::vector<Parameter>& parameters() const { return data_->parameters; }
+  [[nodiscard]] const std::vector<ParameterBlock>& blocks() const { return data_->blocks; }
+  /// @throws InvalidInput if i is not in 0 … size() − 1
   [[nodiscard]] const Parameter& operator[](int i) const {
-    return parameters_[static_cast<std::size_t>(i)];
+    require_index("parameter", i, size());
+    return parameters()[static_cast<std::size_t>(i)];
   }
 
   /// Index in p of a full name.
@@ -44,12 +50,25 @@ class ParameterSet {
   [[nodiscard]] Eigen::VectorXd lower() const;    ///< [size]
   [[nodiscard]] Eigen::VectorXd upper() const;    ///< [size]
 
+  /// The same parameters, with the same nominal values and bounds.
+  friend bool operator==(const ParameterSet& a, const ParameterSet& b) {
+    return a.data_ == b.data_ || a.parameters() == b.parameters();
+  }
+
  private:
   explicit ParameterSet(std::vector<Parameter> parameters);
 
-  std::vector<Parameter> parameters_;
-  std::vector<ParameterBlock> blocks_;
+  struct Data {
+    std::vector<Parameter> parameters;
+    std::vector<ParameterBlock> blocks;
+  };
+
+  std::shared_ptr<const Data> data_;
 };
+
+/// @throws InvalidInput if the set is not of this model: naming the first parameter that the model
+///         lacks, or whose nominal value or bound is another one there
+void require_parameters_of(const Model& model, const ParameterSet& set);
 
 /// Sets a mechanism's numbers to the model's own, with p in place of those in the set.
 ///

@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "hbar/core/base/unit_vector.h"
 #include "hbar/core/scene/distance_cache.h"
 #include "hbar/core/scene/xml_element.h"
 
@@ -36,7 +37,7 @@ hbar::Contact make_law(const Contact& contact) {
 
 Plane ground_plane(const Description& description) {
   const Ground ground = description.ground.value_or(Ground());
-  return {vector(ground.pos), vector(ground.normal).stableNormalized()};
+  return {vector(ground.pos), unit_vector(vector(ground.normal))};
 }
 
 /// Makes the contacts of a scene.

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <utility>
 
+#include "hbar/core/base/unit_vector.h"
 #include "hbar/core/scene/read_obj.h"
 #include "hbar/core/scene/xml_element.h"
 
@@ -16,7 +17,7 @@ double share(int i, int count) { return count > 1 ? static_cast<double>(i) / (co
 
 std::vector<SensorPoint> rectangle_points(const RectArray& rect) {
   Eigen::Matrix<double, 3, 2> axes;
-  axes << vector(rect.axis0).stableNormalized(), vector(rect.axis1).stableNormalized();
+  axes << unit_vector(vector(rect.axis0)), unit_vector(vector(rect.axis1));
   const Eigen::Vector3d origin = vector(rect.rect_pos0);
   // How far the opposite corner lies along each axis: its projection onto their plane, in the basis
   // dual to them.

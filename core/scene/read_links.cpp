@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "hbar/core/base/error.h"
+#include "hbar/core/base/unit_vector.h"
 #include "hbar/core/files/numbers.h"
 #include "hbar/core/scene/principal_axes.h"
 #include "hbar/core/scene/read_elements.h"
@@ -27,9 +28,7 @@ JointType joint_type(std::size_t choice) {
   return static_cast<JointType>(choice);
 }
 
-Eigen::Vector3d direction(const Vec3& v) {
-  return Eigen::Vector3d(v[0], v[1], v[2]).stableNormalized();
-}
+Eigen::Vector3d direction(const Vec3& v) { return unit_vector({v[0], v[1], v[2]}); }
 
 void check_limits(const XmlElement& element, const Joint& joint) {
   if (!joint.lim || joint.type == JointType::kFixed) {

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "hbar/core/base/error.h"
+#include "hbar/core/base/unit_vector.h"
 #include "hbar/core/files/numbers.h"
 #include "hbar/core/files/text_file.h"
 
@@ -211,8 +212,8 @@ std::vector<SensorPoint> read_sensor_points_text(std::string_view text, const st
   std::vector<SensorPoint> points;
   const auto read = [&](int line, const std::vector<std::string_view>& words) {
     const SensorPoint point = {read_point(words, 0, name, line),
-                               read_point(words, 3, name, line).stableNormalized(),
-                               read_point(words, 6, name, line).stableNormalized()};
+                               unit_vector(read_point(words, 3, name, line)),
+                               unit_vector(read_point(words, 6, name, line))};
     if (point.axis0.cross(point.axis1).norm() < kSmallestSine) {
       fail(name, line, "the axes a0 and a1 are zero or parallel; they span a plane");
     }

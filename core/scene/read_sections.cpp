@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "hbar/core/base/unit_vector.h"
 #include "hbar/core/scene/read_elements.h"
 
 namespace hbar::scene {
@@ -19,7 +20,7 @@ RectArray read_rect_array(const XmlElement& element) {
                          element.numbers<3>("axis0"), element.numbers<3>("axis1"),
                          element.integers<2>("resolution")};
   const Eigen::Vector3d normal =
-      vector(points.axis0).stableNormalized().cross(vector(points.axis1).stableNormalized());
+      unit_vector(vector(points.axis0)).cross(unit_vector(vector(points.axis1)));
   if (normal.norm() < kLeastSine) {
     element.fail("axis1", "parallel to axis0", "the two axes must not be parallel");
   }

@@ -105,6 +105,11 @@ ExitCode check(const Arguments& arguments, const LoadedProblem& loaded) {
   if (!report.passed()) {
     throw ToolError(ExitCode::kCheckFailed, "the gradient of a class is not confirmed");
   }
+  if (!report.unresolved().empty()) {
+    write_message(fmt::format(
+        "no difference could be taken on one smooth piece: {}: only the dot product confirms these",
+        fmt::join(report.unresolved(), ", ")));
+  }
   return ExitCode::kOk;
 }
 

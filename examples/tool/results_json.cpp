@@ -192,7 +192,11 @@ std::string check_json(const LoadedProblem& loaded, const GradientCheckReport& r
   out["classes"] = Json::array();
   for (const GradientCheckRow& row : report.rows) {
     Json entry = {{"name", row.name}, {"size", row.size}, {"difference_gap", row.difference_gap}};
-    entry["taylor_slope"] = row.remainder_vanishes ? Json() : Json(row.taylor_slope);
+    if (!row.resolved) {
+      entry["difference_gap"] = Json();
+    }
+    entry["taylor_slope"] =
+        row.remainder_vanishes || !row.resolved ? Json() : Json(row.taylor_slope);
     entry["dot_gap"] = row.dot_gap;
     entry["passed"] = row.passed;
     out["classes"].push_back(std::move(entry));

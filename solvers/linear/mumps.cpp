@@ -9,6 +9,7 @@
 #include <new>
 #include <numeric>
 
+#include "hbar/solvers/linear/mutual_exclusion.h"
 #include "hbar/solvers/linear/suitesparse.h"
 
 namespace hbar::solvers {
@@ -29,12 +30,6 @@ constexpr int kSymmetric = 2;
 
 // Workspace beyond MUMPS' estimate, in percent, at the first and at later tries.
 constexpr std::array<int, 3> kHeadroom = {20, 100, 400};
-
-/// MUMPS has global variables.
-std::mutex& mumps_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 /// ICNTL(7): 1 takes the order of perm_in, 7 leaves the choice to MUMPS.
 int code_of(Ordering ordering) {

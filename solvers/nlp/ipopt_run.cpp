@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "hbar/solvers/linear/mutual_exclusion.h"
 #include "hbar/solvers/nlp/scaled_nlp.h"
 
 namespace hbar::solvers {
@@ -52,8 +53,10 @@ using Output = Eigen::Map<Eigen::VectorXd>;
 /// An Nlp as Ipopt sees it: scaled, in C arrays, false for failure.
 class Adapter final : public Ipopt::TNLP {
  public:
-  Adapter(Nlp& nlp, const IpoptOptions& options)
+  /// @param mumps  held by this thread; given back during the callbacks
+  Adapter(Nlp& nlp, const IpoptOptions& options, std::unique_lock<std::mutex>& mumps)
       : options_(options),
+        mumps_(mumps),
         program_(nlp, options.constraint_tolerance, options.objective_scale, options.hessian) {
     PrimalDualPoint start;
     start.x = nlp.variables().start;
@@ -102,14 +105,17 @@ class Adapter final : public Ipopt::TNLP {
   }
 
   bool eval_f(Index, const Number* x, bool, Number& value) override {
+    const Unlocked callback(mumps_);
     return !must_stop() && program_.scaled_objective(Vector(x, n()), value);
   }
 
   bool eval_grad_f(Index, const Number* x, bool, Number* gradient) override {
+    const Unlocked callback(mumps_);
     return !must_stop() && program_.scaled_gradient(Vector(x, n()), Output(gradient, n()));
   }
 
   bool eval_g(Index, const Number* x, bool, Index, Number* values) override {
+    const Unlocked callback(mumps_);
     return !must_stop() && program_.scaled_constraints(Vector(x, n()), Output(values, m()));
   }
 
@@ -118,6 +124,7 @@ class Adapter final : public Ipopt::TNLP {
     if (values == nullptr) {
       return copy_pattern(program_.jacobian_pattern(), rows, columns);
     }
+    const Unlocked callback(mumps_);
     return !must_stop() && program_.scaled_jacobian(Vector(x, n()), Output(values, entries));
   }
 
@@ -129,6 +136,7 @@ class Adapter final : public Ipopt::TNLP {
     if (values == nullptr) {
       return copy_pattern(program_.hessian_pattern(), rows, columns);
     }
+    const Unlocked callback(mumps_);
     return !must_stop() && program_.scaled_hessian(Vector(x, n()), sigma, Vector(lambda, m()),
                                                    Output(values, entries));
   }
@@ -137,6 +145,7 @@ class Adapter final : public Ipopt::TNLP {
                              Number inf_pr, Number inf_du, Number mu, Number d_norm,
                              Number regularization, Number, Number alpha_primal, Index trials,
                              const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+    const Unlocked callback(mumps_);
     result_.iterations = iteration;
     result_.mu = mu;
     if (must_stop()) {
@@ -208,6 +217,7 @@ class Adapter final : public Ipopt::TNLP {
   }
 
   const IpoptOptions& options_;
+  std::unique_lock<std::mutex>& mumps_;
   ScaledNlp program_;
   PrimalDualPoint start_;  // scaled
   PrimalDualPoint last_;   // scaled
@@ -328,6 +338,7 @@ IpoptResult run_ipopt(Nlp& nlp, const IpoptOptions& options, std::ostream* journ
                               "; expected a positive number"));
   }
   const ExclusiveRun run;
+  std::unique_lock<std::mutex> mumps(mumps_mutex());
   // Without a console Ipopt prints nothing, whatever happens.
   const auto application = make_counted<Ipopt::IpoptApplication>(options.print_level > 0);
   if (journal != nullptr) {
@@ -342,11 +353,16 @@ IpoptResult run_ipopt(Nlp& nlp, const IpoptOptions& options, std::ostream* journ
   if (status != Ipopt::Solve_Succeeded) {
     throw InvalidInput(concat("ipopt: Ipopt refused its options (", static_cast<int>(status), ")"));
   }
-  const auto adapter = make_counted<Adapter>(nlp, options);
+  Ipopt::SmartPtr<Adapter> adapter;
+  {
+    const Unlocked callback(mumps);
+    adapter = make_counted<Adapter>(nlp, options, mumps);
+  }
   status = application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(adapter)));
   if (adapter->exception() != nullptr) {
     std::rethrow_exception(adapter->exception());
   }
+  const Unlocked callback(mumps);
   return adapter->take_result(translate(status), nlp);
 }
 

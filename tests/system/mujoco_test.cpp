@@ -16,6 +16,7 @@
 #include "tests/support/duals.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hbar {
 namespace {
@@ -202,7 +203,8 @@ Matrix3<S> ball_map(const JointKind& kind, const Vector3<S>& r) {
 class Witness {
  public:
   explicit Witness(const TreeOfParts& tree) : tree_(tree), hbar_(hbar_model(tree)) {
-    const std::string file = ::testing::TempDir() + "hbar_mujoco_test.xml";
+    const scene::TemporaryFolder folder;
+    const std::string file = folder / "tree.xml";
     std::ofstream(file) << mjcf(tree);
     std::array<char, 1000> error{};
     model_.reset(mj_loadXML(file.c_str(), nullptr, error.data(), static_cast<int>(error.size())));

@@ -162,7 +162,7 @@ TEST(InputVariables, RefusePartsThatDoNotFit) {
     return message_of<InvalidInput>([&] { static_cast<void>(InputVariables(problem)); });
   };
   EXPECT_EQ(message([](TrajectoryProblem& parts) { parts.map = nullptr; }),
-            "TrajectoryProblem: the map has 0 parameters; the horizon has 5");
+            "TrajectoryProblem: there is no map from designs to parameters (it is empty or null)");
   EXPECT_EQ(message([](TrajectoryProblem& parts) { parts.controls.hold = 0; }),
             "TrajectoryProblem: controls.hold is 0; it must be ≥ 1");
   EXPECT_EQ(message([](TrajectoryProblem& parts) { parts.design_weight = testing::kNan; }),

@@ -29,6 +29,9 @@ TEST(Horizon, RefusesBadOptions) {
   EXPECT_EQ(message(options_of("bdf1", std::numeric_limits<double>::infinity(), 3)),
             "time step h is inf; it must be positive");
   EXPECT_NE(message(options_of("bdf1", std::numeric_limits<double>::quiet_NaN(), 3)), "");
+  EXPECT_EQ(message(options_of("bdf1", 1e-321, 3)),
+            "time step h is 9.98013e-322; it must be between 1e-120 and 1e+120: its square must be "
+            "a number");
   EXPECT_EQ(message(options_of("bdf1", 0.1, 0)), "steps is 0; it must be at least 1");
   EXPECT_EQ(message(options_of("bdf1", 0.1, -5)), "steps is -5; it must be at least 1");
 }

@@ -7,18 +7,19 @@
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/atomic_file.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hbar::scene {
 namespace {
 
 TEST(TextFile, IsReadToTheLastByte) {
-  const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "hbar_text_file";
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder / "text";
   std::string text(200000, 'x');
   text += '\0';
   text += "end";
   write_file_atomically(path, text);
   EXPECT_EQ(read_text_file(path), text);
-  std::filesystem::remove(path);
 }
 
 TEST(TextFile, SaysWhyItCannotBeRead) {

@@ -8,6 +8,7 @@
 #include "hbar/core/scene/read_obj.h"
 #include "hbar/core/scene/spread_vertices.h"
 #include "tests/core/scene/scene_testing.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hbar::scene {
 namespace {
@@ -15,18 +16,16 @@ namespace {
 /// A folder with files of contact points, for one test.
 class MadeBodies : public ::testing::Test {
  protected:
-  MadeBodies() : folder_(std::filesystem::path(::testing::TempDir()) / "hbar_build_bodies") {
-    std::filesystem::create_directories(folder_);
+  MadeBodies() {
     std::filesystem::copy_file(std::string(kScenes) + "/wedge.obj", folder_ / "wedge.obj",
                                std::filesystem::copy_options::overwrite_existing);
     std::ofstream(folder_ / "two.txt") << "2\n1 2 3\n4 5 6\n";
     std::ofstream(folder_ / "one.txt") << "1\n7 8 9\n";
     std::ofstream(folder_ / "bad.txt") << "1\n7 8\n";
   }
-  ~MadeBodies() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] BuiltBody built(const std::string& body) const {
-    const Scene scene = read_scene_text(scene_with_body(body), "a.xml", folder_);
+    const Scene scene = read_scene_text(scene_with_body(body), "a.xml", folder_.path());
     return build_body(scene, scene.description.robots.at(0).links.at(0).body, {});
   }
   [[nodiscard]] std::string refusal(const std::string& body) const {
@@ -38,7 +37,7 @@ class MadeBodies : public ::testing::Test {
     return "was built";
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 /// How many contact points another program found on the bodies of recorded scenes.

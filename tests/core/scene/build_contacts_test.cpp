@@ -6,6 +6,7 @@
 #include "hbar/core/scene/build_model.h"
 #include "tests/core/scene/build_refusal.h"
 #include "tests/core/scene/scene_testing.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hbar::scene {
 namespace {
@@ -26,23 +27,21 @@ std::string scene_text(const std::string& section) {
 /// A folder for what a mesh leaves behind.
 class Contacts : public ::testing::Test {
  protected:
-  Contacts() : folder_(std::filesystem::path(::testing::TempDir()) / "hbar_build_contacts") {
-    std::filesystem::create_directories(folder_);
+  Contacts() {
     std::filesystem::copy_file(HBAR_SOURCE_DIR "/tests/golden/scenes/wedge.obj",
                                folder_ / "wedge.obj",
                                std::filesystem::copy_options::overwrite_existing);
     std::ofstream(folder_ / "none.txt") << "0\n";
   }
-  ~Contacts() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] Scene scene(const std::string& section) const {
-    return read_scene_text(scene_text(section), "a.xml", folder_);
+    return read_scene_text(scene_text(section), "a.xml", folder_.path());
   }
   [[nodiscard]] std::vector<hbar::Contact> contacts(const std::string& section) const {
     return build_model(scene(section)).contacts();
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(Contacts, WithTheGroundTouchItsPlane) {

@@ -5,6 +5,7 @@
 
 #include "hbar/core/scene/build_model.h"
 #include "tests/core/scene/scene_testing.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hbar::scene {
 namespace {
@@ -34,22 +35,20 @@ TEST(RectangularSensors, RunAlongTheirSecondAxisFirst) {
 /// A folder with files of sensor points, for one test.
 class Sensors : public ::testing::Test {
  protected:
-  Sensors() : folder_(std::filesystem::path(::testing::TempDir()) / "hbar_build_tactile") {
-    std::filesystem::create_directories(folder_);
+  Sensors() {
     std::filesystem::copy_file(std::string(kScenes) + "/wedge.obj", folder_ / "wedge.obj",
                                std::filesystem::copy_options::overwrite_existing);
     std::ofstream(folder_ / "two.txt") << "2\n1 2 3 2 0 0 0 3 0\n4 5 6 0 0 1 1 0 0\n";
     std::ofstream(folder_ / "none.txt") << "0\n";
     std::ofstream(folder_ / "bad.txt") << "1\n1 2 3\n";
   }
-  ~Sensors() override { std::filesystem::remove_all(folder_); }
 
   /// A scene of one body "a" in line 5 and a sensor on it in line 2.
   [[nodiscard]] Scene scene(const std::string& body, const std::string& sensor) const {
     return read_scene_text("<redmax>\n<sensor><tactile body=\"a\" " + sensor +
                                "/></sensor>\n<robot><link name=\"a\">\n<joint type=\"fixed\"/>\n" +
                                body + "</link></robot></redmax>",
-                           "a.xml", folder_);
+                           "a.xml", folder_.path());
   }
   [[nodiscard]] std::string refusal(const std::string& sensor) const {
     try {
@@ -60,7 +59,7 @@ class Sensors : public ::testing::Test {
     return "was built";
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(Sensors, TakeAxesOfAnyAngle) {

@@ -5,6 +5,7 @@
 
 #include "hbar/core/files/text_file.h"
 #include "tests/core/scene/scene_testing.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hbar::scene {
 namespace {
@@ -163,15 +164,14 @@ TEST(WriteScene, RefusesWhatAFileCannotSay) {
 }
 
 TEST(WriteScene, WritesAFileThatReadsBackEqual) {
-  const std::filesystem::path path =
-      std::filesystem::path(::testing::TempDir()) / "hbar_write_scene.xml";
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder / "scene.xml";
   const Description description = everything();
   write_scene(path, description);
   EXPECT_EQ(read_scene(path).description, description);
   const std::string text = read_text_file(path);
   EXPECT_THROW(write_scene(path, Description()), InvalidInput);
   EXPECT_EQ(read_text_file(path), text);
-  std::filesystem::remove(path);
 }
 
 }  // namespace
