@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "hbar/adjoint/stage/parameter_derivatives.h"
+#include "hbar/adjoint/trajectory/check_trajectory.h"
 #include "hbar/adjoint/trajectory/flat_stencil.h"
 #include "hbar/adjoint/trajectory/history.h"
 #include "hbar/adjoint/trajectory/horizon.h"

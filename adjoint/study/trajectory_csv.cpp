@@ -92,6 +92,49 @@ std::vector<ValuePlace> read_heading(const CsvRow& heading, const std::string& f
   return columns;
 }
 
+/// The controls of a table.
+class Controls {
+ public:
+  Controls(const TrajectoryNames& names, const std::vector<ValuePlace>& columns, int steps)
+      : names_(names.u), steps_(steps), known_(names.u.size(), kNoColumn) {
+    for (const ValuePlace& column : columns) {
+      if (column.field == ValueField::kU) {
+        known_[static_cast<std::size_t>(column.index)] = 0;
+        u_.setZero(static_cast<Eigen::Index>(names_.size()), steps);
+      }
+    }
+  }
+
+  /// What acted until the end of step `end` − 1, since the value before.
+  void set(int control, int end, double value) {
+    int& known = known_[static_cast<std::size_t>(control)];
+    u_.row(control).segment(known, end - known).setConstant(value);
+    known = end;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd take(const std::string& file) const {
+    for (std::size_t i = 0; i < known_.size() && u_.size() > 0; ++i) {
+      if (known_[i] == kNoColumn) {
+        throw InvalidInput(concat(file, ": there is no column \"", names_[i],
+                                  "\"; controls are given for every motor, or for none"));
+      }
+      if (known_[i] < steps_) {
+        throw InvalidInput(concat(file, ": \"", names_[i], "\" has no value from step ", known_[i],
+                                  " on; there are ", steps_, " steps"));
+      }
+    }
+    return u_;
+  }
+
+ private:
+  static constexpr int kNoColumn = -1;
+
+  const std::vector<std::string>& names_;
+  int steps_;
+  std::vector<int> known_;  // steps whose control is known
+  Eigen::MatrixXd u_;
+};
+
 int read_step(const CsvCell& cell, const std::string& file, const TimeGrid& grid, int last) {
   const double time = number_in(cell, file);
   const double steps = time / grid.h;
@@ -181,6 +224,7 @@ TrajectoryData read_trajectory_csv(std::string_view text, const std::string& fil
   for (std::size_t i = 1; i < rows[0].size(); ++i) {
     out.names.push_back(rows[0][i].text);
   }
+  Controls controls(names, columns, grid.steps);
   std::vector<double> data;
   int last = -1;
   for (std::size_t r = 1; r < rows.size(); ++r) {
@@ -195,16 +239,22 @@ TrajectoryData read_trajectory_csv(std::string_view text, const std::string& fil
         continue;
       }
       ValuePlace place = columns[i - 1];
-      place.step = place.field == ValueField::kU ? last - 1 : last;
-      if (place.step < 0) {
-        fail_at(row[i], file, "a control at time 0, before the first step");
+      place.step = last;
+      const double number = number_in(row[i], file);
+      if (place.field == ValueField::kU) {
+        if (last == 0) {
+          fail_at(row[i], file, "a control at time 0, before the first step");
+        }
+        controls.set(place.index, last, number);
+        continue;
       }
-      data.push_back(number_in(row[i], file));
+      data.push_back(number);
       out.places.push_back(place);
       out.column.push_back(i - 1);
     }
   }
   out.data = Eigen::Map<const Eigen::VectorXd>(data.data(), static_cast<Eigen::Index>(data.size()));
+  out.u = controls.take(file);
   return out;
 }
 

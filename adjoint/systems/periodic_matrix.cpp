@@ -1,6 +1,7 @@
 #include "hbar/adjoint/systems/periodic_matrix.h"
 
 #include "hbar/adjoint/trajectory/flat_stencil.h"
+#include "hbar/adjoint/trajectory/history.h"
 #include "hbar/core/base/error.h"
 
 namespace hbar {

@@ -37,16 +37,11 @@ void check_limits(const XmlElement& element, const Joint& joint) {
   if ((*joint.lim)[0] <= 0.0 && (*joint.lim)[1] >= 0.0) {
     return;
   }
-  if (joint.lim_stiffness > 0.0) {
-    const std::string name = joint.name.empty() ? "" : concat(" name=\"", joint.name, "\"");
-    element.context().notice(element.line(),
-                             concat("<joint", name,
-                                    ">: the limits exclude the start configuration 0; their spring "
-                                    "pulls it"));
-    return;
-  }
-  element.fail("lim", "the start configuration 0 is outside the limits",
-               "limits include 0, or lim_stiffness is > 0");
+  const std::string name = joint.name.empty() ? "" : concat(" name=\"", joint.name, "\"");
+  element.context().notice(
+      element.line(),
+      concat("<joint", name, ">: the limits exclude the start configuration 0; ",
+             joint.lim_stiffness > 0.0 ? "their spring pulls it" : "give a start inside them"));
 }
 
 CuboidBody read_cuboid(const XmlElement& element) {

@@ -64,28 +64,6 @@ study::TrajectoryNames recorded_names(const Rig& rig, const Sigmas& sigmas,
   return out;
 }
 
-/// The controls of a table, which must be whole if there are any.
-Eigen::MatrixXd controls_of(const study::TrajectoryData& data, const Rig& rig,
-                            const std::string& file) {
-  Eigen::MatrixXd u = Eigen::MatrixXd::Constant(rig.u.rows(), rig.u.cols(),
-                                                std::numeric_limits<double>::quiet_NaN());
-  bool any = false;
-  for (std::size_t i = 0; i < data.places.size(); ++i) {
-    if (data.places[i].field == ValueField::kU) {
-      u(data.places[i].index, data.places[i].step) = data.data[static_cast<Eigen::Index>(i)];
-      any = true;
-    }
-  }
-  if (!any) {
-    return rig.u;
-  }
-  if (!u.allFinite()) {
-    throw InvalidInput(concat(file, ": controls must be given for all ", u.rows(),
-                              " motors and at each of the ", u.cols(), " steps, or not at all"));
-  }
-  return u;
-}
-
 }  // namespace
 
 ParameterSet unknown_parameters(const Model& model, const std::vector<std::string>& unknowns) {
@@ -190,14 +168,11 @@ Recording read_recording(const Rig& rig, const Sigmas& sigmas, const std::string
   const study::TrajectoryData all = study::read_trajectory_csv(
       text, file, names, {.h = rig.horizon.options().h, .steps = rig.horizon.options().steps});
   Recording out;
-  out.u = controls_of(all, rig, file);
+  out.u = all.u.size() > 0 ? all.u : rig.u;
   out.data.names = all.names;
   std::vector<double> numbers;
   std::vector<double> sigma;
   for (std::size_t i = 0; i < all.places.size(); ++i) {
-    if (all.places[i].field == ValueField::kU) {
-      continue;
-    }
     const ValuePlace& place = all.places[i];
     const auto index = static_cast<std::size_t>(place.index);
     const std::string& name = place.field == ValueField::kQ      ? names.q[index]

@@ -67,9 +67,9 @@ struct Rig {
 
 /// The measured data, and the controls that acted.
 struct Recording {
-  study::TrajectoryData data;  ///< without controls
-  Eigen::VectorXd sigma;       ///< of each datum                                        [data]
-  Eigen::MatrixXd u;           ///< those in the table; the rig's where it has none [controls x N]
+  study::TrajectoryData data;
+  Eigen::VectorXd sigma;  ///< of each datum                                        [data]
+  Eigen::MatrixXd u;      ///< those in the table; the rig's where it has none [controls x N]
 };
 
 /// Reads such a table, or a measured one.

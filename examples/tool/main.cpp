@@ -1,6 +1,8 @@
 // The hbar command: describes a scene, simulates it, computes the gradient of an objective and
 // verifies it, and compares linear solvers on such systems. doc/command.md is its manual.
 
+#include <fmt/format.h>
+
 #include <exception>
 #include <new>
 

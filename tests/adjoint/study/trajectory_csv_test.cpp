@@ -37,8 +37,8 @@ TEST(TrajectoryCsv, IsReadAsItIsWritten) {
   const std::string text = trajectory_csv(names, values);
   const TrajectoryData data = read_trajectory_csv(
       text, "t.csv", names, {.h = values.h, .steps = static_cast<int>(values.u.cols())});
-  EXPECT_EQ(data.data.size(),
-            values.q.size() + values.qdot.size() + values.measured.size() + values.u.size());
+  EXPECT_EQ(data.data.size(), values.q.size() + values.qdot.size() + values.measured.size());
+  EXPECT_EQ(data.u, values.u);
   for (std::size_t i = 0; i < data.places.size(); ++i) {
     EXPECT_EQ(data.data[static_cast<Eigen::Index>(i)], value_at(values, data.places[i]));
   }
@@ -64,16 +64,17 @@ TEST(TrajectoryCsv, MayMeasureSomeNumbersAtSomeSteps) {
   const TrajectoryData data = read_arm(
       "# by hand\ntime,tip.z,rate.slider,power,control.hinge\n"
       "0.1,1,,3,7\n0.3000000001,,5,,\n1,8,,,9\n");
-  ASSERT_EQ(data.data.size(), 6);
-  EXPECT_EQ(data.data, (Eigen::VectorXd(6) << 1, 3, 7, 5, 8, 9).finished());
+  ASSERT_EQ(data.data.size(), 4);
+  EXPECT_EQ(data.data, Eigen::Vector4d(1, 3, 5, 8));
   EXPECT_EQ(data.places[0], (ValuePlace{ValueField::kMeasured, 1, 2}));
   EXPECT_EQ(data.places[1], (ValuePlace{ValueField::kMeasured, 1, 3}));
-  EXPECT_EQ(data.places[2], (ValuePlace{ValueField::kU, 0, 0}));
-  EXPECT_EQ(data.places[3], (ValuePlace{ValueField::kQdot, 3, 1}));
-  EXPECT_EQ(data.places[4], (ValuePlace{ValueField::kMeasured, 10, 2}));
-  EXPECT_EQ(data.places[5], (ValuePlace{ValueField::kU, 9, 0}));
-  EXPECT_EQ(data.by_column(Eigen::Vector4d(1.0, 2.0, 3.0, 4.0)),
-            (Eigen::VectorXd(6) << 1, 3, 4, 2, 1, 4).finished());
+  EXPECT_EQ(data.places[2], (ValuePlace{ValueField::kQdot, 3, 1}));
+  EXPECT_EQ(data.places[3], (ValuePlace{ValueField::kMeasured, 10, 2}));
+  EXPECT_EQ(data.by_column(Eigen::Vector4d(1.0, 2.0, 3.0, 4.0)), Eigen::Vector4d(1, 3, 2, 1));
+  // A control acted since the one before.
+  Eigen::RowVectorXd u = Eigen::RowVectorXd::Constant(10, 9.0);
+  u[0] = 7.0;
+  EXPECT_EQ(data.u, u);
   EXPECT_THROW((void)data.by_column(Eigen::Vector3d::Ones()), InvalidInput);
 }
 
@@ -81,6 +82,7 @@ TEST(TrajectoryCsv, UnderstandsTheCommandsNames) {
   const TrajectoryData data = read_arm("time,q.slider,qdot.hinge\n0,1,2\n");
   EXPECT_EQ(data.places[0], (ValuePlace{ValueField::kQ, 0, 1}));
   EXPECT_EQ(data.places[1], (ValuePlace{ValueField::kQdot, 0, 0}));
+  EXPECT_EQ(data.u.size(), 0);
 }
 
 TEST(TrajectoryCsv, SaysWhereItIsWrong) {
@@ -101,6 +103,16 @@ TEST(TrajectoryCsv, SaysWhereItIsWrong) {
             "arm.csv:3:1: time 0.2 does not come after the row before");
   EXPECT_EQ(arm_refusal("time,control.hinge\n0,1\n"),
             "arm.csv:2:3: a control at time 0, before the first step");
+  EXPECT_EQ(arm_refusal("time,hinge,control.hinge\n0.4,1,2\n0.7,1,\n"),
+            "arm.csv: \"control.hinge\" has no value from step 4 on; there are 10 steps");
+  TrajectoryNames names = arm_names();
+  names.u.push_back("control.slider");
+  EXPECT_EQ(testing::message_of<InvalidInput>([&] {
+              (void)read_trajectory_csv("time,control.hinge\n0.1,1\n", "a", names,
+                                        {.h = 0.1, .steps = 1});
+            }),
+            "a: there is no column \"control.slider\"; controls are given for every motor, or for "
+            "none");
 }
 
 TEST(TrajectoryCsv, RefusesNamesWithTwoMeanings) {

@@ -125,7 +125,14 @@ TEST(Links, TakeNamesFromEachOther) {
   EXPECT_EQ(names("", "j", ""), (Names{"j", "j", "j"}));
 }
 
-TEST(Links, LimitsThatPullAreOnlyNoticed) {
+TEST(Links, LimitsThatExcludeTheStartAreNoticed) {
+  EXPECT_EQ(
+      read_scene_text(
+          scene_with_joint("<joint type=\"revolute\" axis=\"0 1 0\" lim=\"-3.07 -0.07\"/>"),
+          "a.xml")
+          .notices,
+      std::vector<std::string>{"a.xml:4: <joint>: the limits exclude the start configuration 0; "
+                               "give a start inside them"});
   const Scene scene = read_scene_text(
       scene_with_joint("<joint type=\"revolute\" axis=\"0 0 1\" lim=\"1 2\" lim_stiffness=\"3\"/>"),
       "a.xml");
@@ -155,10 +162,6 @@ const std::vector<BadScene> kRefusedLinks = {
     {"limits reversed", scene_with_joint("<joint type=\"revolute\" axis=\"0 0 1\" lim=\"1 -1\"/>"),
      "bad.xml:4: <joint lim=\"1 -1\">: the lower number is above the upper one; lim takes 2 "
      "numbers, lower <= upper"},
-    {"start outside the limits",
-     scene_with_joint("<joint type=\"revolute\" axis=\"0 0 1\" lim=\"0.5 1\"/>"),
-     "bad.xml:4: <joint lim=\"0.5 1\">: the start configuration 0 is outside the limits; limits "
-     "include 0, or lim_stiffness is > 0"},
     {"negative damping", scene_with_joint("<joint type=\"fixed\" damping=\"-1\"/>"),
      "bad.xml:4: <joint damping=\"-1\">: out of range; damping takes 1 number >= 0"},
     {"negative stiffness", scene_with_joint("<joint type=\"free2d\" stiffness=\"-1\"/>"),
