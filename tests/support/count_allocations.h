@@ -54,6 +54,10 @@ void* realloc(void* block, std::size_t size) noexcept {
 }
 }
 #else
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC 12 inlines one of the two below and then warns that they do not match.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+#endif
 void* operator new(std::size_t size) {
   ++hbar::testing::allocation_count();
   if (void* block = std::malloc(size > 0 ? size : 1)) {
