@@ -16,9 +16,10 @@ std::vector<std::string> state_names(const Model& model) {
 
 Eigen::VectorXd state_scale(const TrajectoryProblem& problem) {
   const Eigen::Index dof = problem.horizon.model().dof();
+  const Eigen::VectorXd q = filled(problem.q_scale, dof, 1.0, "q_scale");
+  const Eigen::VectorXd qdot = filled(problem.qdot_scale, dof, 1.0, "qdot_scale");
   Eigen::VectorXd out(2 * dof);
-  out << filled(problem.q_scale, dof, 1.0, "q_scale"),
-      filled(problem.qdot_scale, dof, 1.0, "qdot_scale");
+  out << q, qdot;
   return out;
 }
 
