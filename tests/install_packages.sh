@@ -1,9 +1,9 @@
 #!/bin/sh
 # Installs the Debian and Ubuntu packages that hbar needs: tests/install_packages.sh build|test|full
 #
-# `build` is what the library and its examples need, `test` adds what the tests need, `full`
-# what the benchmarks need. Nothing is
-# downloaded, and no network is needed, when all of it is there. Needs root or sudo otherwise.
+# `build` is what the library and its examples need, `test` adds what the tests need, `full` what the
+# benchmarks need. Nothing is downloaded, and no network is needed, when all of it is there. Needs
+# root or sudo otherwise.
 set -eu
 
 build="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev coinor-libipopt-dev

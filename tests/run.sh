@@ -18,11 +18,12 @@ for option in "$@"; do
   case $option in
     --dev) presets="$presets dev" ;;
     --tsan) presets="$presets tsan" ;;
-    --full) presets="release bare dev tsan"; full=yes ;;
+    --full) full=yes ;;
     --no-install) install=no ;;
     *) sed -n '2,11s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
   esac
 done
+[ "$full" = no ] || presets="release bare dev tsan"
 
 passed=0
 failed=0

@@ -189,27 +189,23 @@ class Prober {
     std::vector<double> remainders;
   };
 
-  /// A difference quotient of second order and the Taylor remainder at one step; nothing if a value
-  /// is missing. Central, or by values ahead alone.
+  /// A difference quotient of second order and the Taylor remainder at one step.
   struct Quotient {
     double value = 0.0;
     double remainder = 0.0;
   };
-  std::optional<Quotient> quotient(const Eigen::VectorXd& d, double slope, double step,
-                                   bool central) {
-    const std::optional<double> ahead = value_at(x_ + step * d);
-    const std::optional<double> other =
-        ahead ? value_at(x_ + (central ? -step : 2.0 * step) * d) : std::nullopt;
-    if (!other) {
-      return std::nullopt;
-    }
-    const double remainder = std::abs(*ahead - value_ - step * slope);
+
+  /// @param ahead  Ψ(x + step d)
+  /// @param other  Ψ(x − step d) if central, else Ψ(x + 2 step d)
+  [[nodiscard]] Quotient quotient(double ahead, double other, double slope, double step,
+                                  bool central) const {
+    const double remainder = std::abs(ahead - value_ - step * slope);
     if (central) {
       // The larger of both sides: one alone may change sign, where it has no order.
-      return Quotient{(*ahead - *other) / (2.0 * step),
-                      std::max(remainder, std::abs(*other - value_ + step * slope))};
+      return {(ahead - other) / (2.0 * step),
+              std::max(remainder, std::abs(other - value_ + step * slope))};
     }
-    return Quotient{(4.0 * *ahead - 3.0 * value_ - *other) / (2.0 * step), remainder};
+    return {(4.0 * ahead - 3.0 * value_ - other) / (2.0 * step), remainder};
   }
 
   /// Differences at steps from kLargestStep down, extrapolated once; the best one counts. The
@@ -220,23 +216,30 @@ class Prober {
     constexpr double kSmallestStep = 1e-7;
     Differences out;
     double last = 0.0;
+    // Twice a step ahead is where the step before was.
+    std::optional<double> far = central ? std::nullopt : value_at(x_ + 2.0 * kLargestStep * d);
     for (double step = kLargestStep; out.taken < kSteps && step > kSmallestStep; step *= 0.5) {
-      const std::optional<Quotient> found = quotient(d, slope, step, central);
-      if (!found) {
+      const std::optional<double> ahead = value_at(x_ + step * d);
+      const std::optional<double> other = !central ? far
+                                          : ahead  ? value_at(x_ - step * d)
+                                                   : std::nullopt;
+      far = ahead;
+      if (!ahead || !other) {
         out = Differences();  // larger steps that returned to the piece have left it in between
         continue;
       }
-      out.gap = std::min(out.gap, std::abs(found->value - slope));
+      const Quotient found = quotient(*ahead, *other, slope, step, central);
+      out.gap = std::min(out.gap, std::abs(found.value - slope));
       if (out.taken > 0) {
-        out.gap = std::min(out.gap, std::abs((4.0 * found->value - last) / 3.0 - slope));
+        out.gap = std::min(out.gap, std::abs((4.0 * found.value - last) / 3.0 - slope));
       } else {
         out.largest_step = step;
       }
-      last = found->value;
+      last = found.value;
       ++out.taken;
-      if (found->remainder > 1e3 * rounding) {
+      if (found.remainder > 1e3 * rounding) {
         out.steps.push_back(step);
-        out.remainders.push_back(found->remainder);
+        out.remainders.push_back(found.remainder);
       }
     }
     return out;

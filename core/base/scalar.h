@@ -18,7 +18,7 @@ namespace detail {
 /// Links only with a library that allocates as this program does: aligned to 64 bytes, with 16 for
 /// what is no allocation.
 extern const char kAlignedTo64And16;
-inline const char* const kAlignedAsTheLibrary = &kAlignedTo64And16;
+[[gnu::used]] inline const char* const kAlignedAsTheLibrary = &kAlignedTo64And16;
 
 }  // namespace detail
 
