@@ -22,6 +22,7 @@
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/atomic_file.h"
 #include "hbar/core/files/numbers.h"
+#include "hbar/core/files/result_file.h"
 #include "hbar/core/files/text_file.h"
 
 namespace hbar::study {
@@ -71,6 +72,11 @@ JobResult result_of(const Job& job, int index, const JobOptions& options) {
 /// the parent's cleanup.
 [[noreturn]] void work(const Job& job, int index, const JobOptions& options, int pipe,
                        [[maybe_unused]] pid_t parent) {
+  // Signals to the whole process group are the parent's to answer: a job that died of one would
+  // count as done.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    ::signal(signal, SIG_IGN);
+  }
 #ifdef __linux__
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) {
@@ -184,6 +190,9 @@ class Crew {
   void start(int index) { workers_.emplace_back(job_, index, options_); }
   [[nodiscard]] int size() const { return static_cast<int>(workers_.size()); }
 
+  /// Whether the table holds all that is recorded.
+  [[nodiscard]] bool written() const { return written_; }
+
   /// Waits a moment, and records jobs that have ended or exceeded their time limit.
   void attend() {
     constexpr int kMoment = 20;  // ms: how late a limit or the stop flag is noticed
@@ -213,7 +222,12 @@ class Crew {
     slot = std::move(result);
     ++report_.ran;
     if (!options_.table.empty()) {
-      scene::write_file_atomically(options_.table, job_table(options_, report_.results));
+      try {
+        scene::write_file_atomically(options_.table, job_table(options_, report_.results));
+        written_ = true;
+      } catch (const IoError&) {  // the next one, or the end of the study, may succeed
+        written_ = false;
+      }
     }
     if (options_.on_job) {
       options_.on_job(index, *slot);
@@ -224,6 +238,7 @@ class Crew {
   const Job& job_;
   JobReport& report_;
   std::list<Worker> workers_;
+  bool written_ = true;
 };
 
 void check_job_options(const JobOptions& options) {
@@ -290,6 +305,9 @@ std::mt19937_64 job_random(std::uint64_t seed, int index) {
 JobReport run_jobs(const JobOptions& options, const Job& job) {
   require_given("run_jobs", "job", job);
   check_job_options(options);
+  if (!options.table.empty()) {
+    scene::expect_result_file(options.table);
+  }
   JobReport report = earlier_jobs(options);
   std::vector<int> waiting;
   for (int i = 0; i < options.count; ++i) {
@@ -311,6 +329,9 @@ JobReport run_jobs(const JobOptions& options, const Job& job) {
       crew.start(*next++);
     }
     crew.attend();
+  }
+  if (!crew.written()) {
+    scene::write_result_file(options.table, job_table(options, report.results));
   }
   return report;
 }

@@ -38,7 +38,8 @@ struct JobReport {
 /// @param job      called in child processes; a result with more or fewer numbers than columns, or
 ///   with one that is not finite, counts as failed
 /// @throws InvalidInput if the options are inconsistent or the table belongs to another study
-/// @throws IoError if the table cannot be read or written, or no process can be started
+/// @throws IoError before the work if the table cannot be read or written, or no process can be
+///   started; and if the table cannot be written in the end, with the file that was written instead
 JobReport run_jobs(const JobOptions& options, const Job& job);
 
 }  // namespace hbar::study

@@ -2,18 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "hbar/adjoint/study/csv.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/atomic_file.h"
 #include "hbar/core/files/numbers.h"
+#include "hbar/core/files/result_file.h"
 #include "hbar/core/files/text_file.h"
 
 namespace hbar::study {
 namespace {
 
 constexpr const char* kFormat = "hbar-solution";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 void check_count(Eigen::Index found, std::size_t expected, const char* what) {
   if (found != static_cast<Eigen::Index>(expected)) {
@@ -34,6 +36,7 @@ struct SolutionText {
   std::vector<CsvCell> variables;    // name cells
   std::vector<CsvCell> constraints;  // name cells
   CsvCell end;                       // of the last row
+  bool whole = false;                // the row "end" was reached
 };
 
 void append(Eigen::VectorXd& numbers, double number) {
@@ -45,7 +48,8 @@ void append(Eigen::VectorXd& numbers, double number) {
 void read_solution_row(const CsvRow& row, const std::string& file, SolutionText& out) {
   const std::string& kind = row[0].text;
   const std::map<std::string, std::size_t> cells = {
-      {"status", 2}, {"objective", 2}, {"mu", 2}, {"about", 3}, {"variable", 5}, {"constraint", 3}};
+      {"status", 2},   {"objective", 2},  {"mu", 2}, {"about", 3},
+      {"variable", 5}, {"constraint", 3}, {"end", 3}};
   const auto known = cells.find(kind);
   if (known == cells.end()) {
     fail_at(row[0], file, concat('"', scene::quotable(kind), "\" is nothing that a solution has"));
@@ -56,7 +60,10 @@ void read_solution_row(const CsvRow& row, const std::string& file, SolutionText&
         concat("\"", kind, "\" has ", row.size() - 1, " entries; it takes ", known->second - 1));
   }
   Solution& solution = out.solution;
-  if (kind == "status") {
+  if (kind == "end") {
+    out.whole = integer_in(row[1], file) == static_cast<int>(out.variables.size()) &&
+                integer_in(row[2], file) == static_cast<int>(out.constraints.size());
+  } else if (kind == "status") {
     solution.status = row[1].text;
   } else if (kind == "objective") {
     solution.objective = number_in(row[1], file);
@@ -93,6 +100,12 @@ SolutionText read_solution_text(const std::filesystem::path& path) {
     read_solution_row(rows[i], file, out);
   }
   out.end = rows.back().back();
+  if (!out.whole || rows.back()[0].text != "end") {
+    fail_at(
+        out.end, file,
+        concat("this solution is not whole: after ", out.variables.size(), " variables and ",
+               out.constraints.size(), " constraints there is no line \"end\" that counts them"));
+  }
   return out;
 }
 
@@ -114,19 +127,8 @@ void compare_names(const std::vector<CsvCell>& found, const std::vector<std::str
   }
 }
 
-}  // namespace
-
-Solution solution_of(const solvers::Nlp& nlp, const solvers::IpoptResult& result,
-                     std::map<std::string, std::string> about) {
-  return {.point = result.point(),
-          .variable_names = nlp.variables().names,
-          .constraint_names = nlp.constraint_limits().names,
-          .objective = result.objective,
-          .status = std::string(to_string(result.status)),
-          .about = std::move(about)};
-}
-
-void save_solution(const std::filesystem::path& path, const Solution& solution) {
+/// @throws InvalidInput as save_solution
+std::string solution_text(const Solution& solution) {
   const solvers::PrimalDualPoint& point = solution.point;
   const std::size_t n = solution.variable_names.size();
   const std::size_t m = solution.constraint_names.size();
@@ -155,31 +157,18 @@ void save_solution(const std::filesystem::path& path, const Solution& solution) 
     text += "constraint," + csv_cell(name) +
             finite_number(point.constraint_multipliers[static_cast<Eigen::Index>(i)], name) + '\n';
   }
-  scene::write_file_atomically(path, text);
+  return text + concat("end,", n, ',', m, '\n');
 }
 
-Solution read_solution(const std::filesystem::path& path) {
-  return read_solution_text(path).solution;
-}
-
-solvers::PrimalDualPoint load_solution(const std::filesystem::path& path, const solvers::Nlp& nlp) {
-  const SolutionText text = read_solution_text(path);
-  const std::string file = path.string();
-  compare_names(text.variables, nlp.variables().names, "variable", text.end, file);
-  compare_names(text.constraints, nlp.constraint_limits().names, "constraint", text.end, file);
-  return text.solution.point;
-}
-
-solvers::IpoptResult solve_and_save(solvers::Nlp& nlp, const solvers::IpoptOptions& options,
-                                    const std::filesystem::path& path,
-                                    std::map<std::string, std::string> about) {
-  solvers::IpoptResult result = solvers::solve_with_ipopt(nlp, options);
+/// What is saved of a result; nothing if it has no finite point.
+std::optional<std::string> result_text(const solvers::Nlp& nlp, const solvers::IpoptResult& result,
+                                       std::map<std::string, std::string> about) {
   Solution solution = solution_of(nlp, result, std::move(about));
   const auto n = static_cast<Eigen::Index>(solution.variable_names.size());
   const bool reached =
       result.x.size() == n && result.x.allFinite() && std::isfinite(result.objective);
   if (!reached) {
-    return result;
+    return std::nullopt;
   }
   solvers::PrimalDualPoint& point = solution.point;
   const auto m = static_cast<Eigen::Index>(solution.constraint_names.size());
@@ -194,7 +183,69 @@ solvers::IpoptResult solve_and_save(solvers::Nlp& nlp, const solvers::IpoptOptio
   if (!std::isfinite(point.mu)) {
     point.mu = 0.0;
   }
-  save_solution(path, solution);
+  return solution_text(solution);
+}
+
+}  // namespace
+
+Solution solution_of(const solvers::Nlp& nlp, const solvers::IpoptResult& result,
+                     std::map<std::string, std::string> about) {
+  return {.point = result.point(),
+          .variable_names = nlp.variables().names,
+          .constraint_names = nlp.constraint_limits().names,
+          .objective = result.objective,
+          .status = std::string(to_string(result.status)),
+          .about = std::move(about)};
+}
+
+void save_solution(const std::filesystem::path& path, const Solution& solution) {
+  scene::write_result_file(path, solution_text(solution));
+}
+
+Solution read_solution(const std::filesystem::path& path) {
+  return read_solution_text(path).solution;
+}
+
+solvers::PrimalDualPoint load_solution(const std::filesystem::path& path, const solvers::Nlp& nlp) {
+  const SolutionText text = read_solution_text(path);
+  const std::string file = path.string();
+  compare_names(text.variables, nlp.variables().names, "variable", text.end, file);
+  compare_names(text.constraints, nlp.constraint_limits().names, "constraint", text.end, file);
+  return text.solution.point;
+}
+
+void save_result(const solvers::Nlp& nlp, const solvers::IpoptResult& result,
+                 const std::filesystem::path& path, std::map<std::string, std::string> about) {
+  if (const std::optional<std::string> text = result_text(nlp, result, std::move(about))) {
+    scene::write_result_file(path, *text);
+  }
+}
+
+solvers::IpoptOptions saving_checkpoints(const solvers::Nlp& nlp, solvers::IpoptOptions options,
+                                         const std::filesystem::path& path,
+                                         const std::map<std::string, std::string>& about) {
+  options.on_checkpoint = [&nlp, path, about, before = std::move(options.on_checkpoint)](
+                              const solvers::IpoptResult& result) {
+    if (before) {
+      before(result);
+    }
+    try {
+      if (const std::optional<std::string> text = result_text(nlp, result, about)) {
+        scene::write_file_atomically(path, *text);
+      }
+    } catch (const IoError&) {  // the end of the work says it, and saves elsewhere
+    }
+  };
+  return options;
+}
+
+solvers::IpoptResult solve_and_save(solvers::Nlp& nlp, const solvers::IpoptOptions& options,
+                                    const std::filesystem::path& path,
+                                    std::map<std::string, std::string> about) {
+  scene::expect_result_file(path);
+  solvers::IpoptResult result =
+      solvers::solve_with_ipopt(nlp, saving_checkpoints(nlp, options, path, about));
+  save_result(nlp, result, path, std::move(about));
   return result;
 }
 

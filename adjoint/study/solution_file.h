@@ -48,13 +48,31 @@ void save_solution(const std::filesystem::path& path, const Solution& solution);
 [[nodiscard]] solvers::PrimalDualPoint load_solution(const std::filesystem::path& path,
                                                      const solvers::Nlp& nlp);
 
-/// Solves with Ipopt and saves what was reached, whether Ipopt converged, ran out of iterations or
-/// was interrupted (IpoptOptions::stop, on_iteration): in the latter cases the best point
-/// evaluated, with the multipliers of the last iterate. Nothing is saved while Ipopt runs, because
-/// it does not expose its iterates, nor if it throws or reaches no finite point. Multipliers that
-/// are not finite are saved as 0.
+/// Options whose on_checkpoint saves the result of a program, after the caller's own if there is
+/// one. A checkpoint that cannot be written is left out: the next one, or the end, may succeed.
 ///
-/// @throws what solve_with_ipopt and save_solution throw
+/// @param nlp      must outlive the optimisation
+/// @param options  checkpoint_every is how often
+/// @param path     the file
+[[nodiscard]] solvers::IpoptOptions saving_checkpoints(
+    const solvers::Nlp& nlp, solvers::IpoptOptions options, const std::filesystem::path& path,
+    const std::map<std::string, std::string>& about = {});
+
+/// Saves what an optimisation reached, whether it converged, ran out of iterations or was
+/// interrupted: the best point, with the multipliers of the last iterate. Multipliers that are not
+/// finite are saved as 0; a result without a finite point is not saved.
+///
+/// @throws InvalidInput as save_solution
+/// @throws IoError as scene::write_result_file: the message names the file that was written instead
+void save_result(const solvers::Nlp& nlp, const solvers::IpoptResult& result,
+                 const std::filesystem::path& path, std::map<std::string, std::string> about = {});
+
+/// Solves with Ipopt and saves the result (save_result). The best point so far is saved every
+/// IpoptOptions::checkpoint_every seconds on the way, each time atomically: a process that is
+/// killed at any moment loses no more than that, and load_solution reads what it left.
+///
+/// @throws IoError before the work if the file could not be written, and as save_result after it
+/// @throws what solve_with_ipopt throws; then the last checkpoint stays
 [[nodiscard]] solvers::IpoptResult solve_and_save(solvers::Nlp& nlp,
                                                   const solvers::IpoptOptions& options,
                                                   const std::filesystem::path& path,

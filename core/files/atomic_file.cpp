@@ -1,6 +1,7 @@
 #include "hbar/core/files/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -8,19 +9,24 @@
 #include <cstdlib>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "hbar/core/base/error.h"
 
 namespace hbar::scene {
 namespace {
 
+constexpr std::string_view kTemporary = ".hbar-tmp-";
+
 /// An open file that is closed, and a temporary one removed, when this goes out of scope.
 class OpenFile {
  public:
   OpenFile(int descriptor, std::string temporary)
       : descriptor_(descriptor), temporary_(std::move(temporary)) {}
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
+  OpenFile(OpenFile&& other) noexcept
+      : descriptor_(std::exchange(other.descriptor_, -1)),
+        temporary_(std::exchange(other.temporary_, "")) {}
+  OpenFile& operator=(OpenFile&&) = delete;
   ~OpenFile() {
     if (descriptor_ >= 0) {
       ::close(descriptor_);
@@ -82,7 +88,47 @@ mode_t new_file_mode() {
   return 0666 & ~mask;
 }
 
+/// A new file beside `real`, locked while it is open: what nobody locks was left by a process that
+/// was killed. Between being made and locked it may have been removed as such; then it has no name.
+OpenFile open_temporary(const std::filesystem::path& real, const std::filesystem::path& path) {
+  const std::string pattern = (real.parent_path() / kTemporary).string() + "XXXXXX";
+  constexpr int kTries = 100;
+  for (int i = 0; i < kTries; ++i) {
+    std::string name = pattern;
+    const int descriptor = ::mkstemp(name.data());
+    if (descriptor < 0) {
+      fail(path, "written", errno);
+    }
+    OpenFile file(descriptor, name);
+    struct stat status = {};
+    ::flock(descriptor, LOCK_EX);  // some file systems have no locks; nor do they tell apart then
+    if (::fstat(descriptor, &status) != 0 || status.st_nlink > 0) {
+      return file;
+    }
+    file.keep();
+  }
+  fail(path, "written", EBUSY);
+}
+
 }  // namespace
+
+void remove_abandoned_files(const std::filesystem::path& folder) {
+  std::error_code code;
+  for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, code), end;
+       !code && entry != end; entry.increment(code)) {
+    if (!entry->path().filename().string().starts_with(kTemporary)) {
+      continue;
+    }
+    const int descriptor = ::open(entry->path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor < 0) {
+      continue;
+    }
+    const OpenFile file(descriptor, "");
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+      ::unlink(entry->path().c_str());
+    }
+  }
+}
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view text) {
   if (path.empty()) {
@@ -100,12 +146,8 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view t
   std::error_code ignored;
   const std::filesystem::path target = exists ? std::filesystem::canonical(path, ignored) : path;
   const std::filesystem::path& real = target.empty() ? path : target;
-  std::string temporary = real.string() + ".XXXXXX";
-  const int descriptor = ::mkstemp(temporary.data());
-  if (descriptor < 0) {
-    fail(path, "written", errno);
-  }
-  OpenFile file(descriptor, temporary);
+  OpenFile file = open_temporary(real, path);
+  const int descriptor = file.descriptor();
 
   write_all(descriptor, text, path);
   const mode_t mode = exists ? (status.st_mode & 07777) : new_file_mode();
@@ -115,10 +157,13 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view t
   if (::fsync(descriptor) != 0) {
     fail(path, "written", errno);
   }
+  // Closing may tell of a lost write. The lock belongs to the duplicate, too, and stays until the
+  // file has its name.
+  const OpenFile lock(::dup(descriptor), "");
   if (const int code = file.close()) {
     fail(path, "written", code);
   }
-  if (::rename(temporary.c_str(), real.c_str()) != 0) {
+  if (::rename(file.temporary().c_str(), real.c_str()) != 0) {
     fail(path, "written", errno);
   }
   file.keep();

@@ -15,4 +15,8 @@ namespace hbar::scene {
 /// @throws IoError with the path and the system's reason
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
+/// Removes the temporary files (.hbar-tmp-*) of processes that were killed while they wrote into a
+/// folder; those that are being written stay. What cannot be removed stays, too.
+void remove_abandoned_files(const std::filesystem::path& folder);
+
 }  // namespace hbar::scene

@@ -10,7 +10,6 @@
 #include "hbar/adjoint/study/solution_file.h"
 #include "hbar/adjoint/study/trajectory_csv.h"
 #include "hbar/core/base/error.h"
-#include "hbar/core/files/atomic_file.h"
 #include "hbar/solvers/nlp/diagnosis.h"
 #include "hbar/solvers/nlp/ipopt_derivatives.h"
 
@@ -72,9 +71,17 @@ void add_options(CLI::App& app, OptimiseArguments& arguments) {
   app.add_option("--segments", arguments.segments, "Of multiple shooting.")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  add_save_option(app, arguments.save_every);
   app.add_flag("--check-derivatives", arguments.check_derivatives,
                "First let Ipopt compare all derivatives with differences, for which a coarse "
                "problem is enough.");
+}
+
+void add_save_option(CLI::App& app, double& save_every) {
+  app.add_option("--save-every", save_every,
+                 "Seconds after which the best point so far is written again to solution.csv.")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
 }
 
 std::string_view name_of(solvers::HessianKind kind) {
@@ -108,6 +115,9 @@ Optimised optimise(Transcription& program, const OptimiseArguments& arguments,
   options.hessian = find_hessian(arguments.hessian);
   options.max_iterations = arguments.max_iterations;
   options.stop = &stop_flag();
+  options.checkpoint_every = arguments.save_every;
+  const std::filesystem::path solution = arguments.out / "solution.csv";
+  expect_results(arguments.out, {"solution.csv", "iterations.csv", "trajectory.csv"});
   if (!arguments.resume.empty()) {
     options.warm_start = study::load_solution(arguments.resume, program);
   }
@@ -125,19 +135,24 @@ Optimised optimise(Transcription& program, const OptimiseArguments& arguments,
 
   const TranscriptionTimes before = program.times();
   Optimised out;
-  out.result = study::solve_and_save(
-      program, options, arguments.out / "solution.csv",
-      {{"formulation", arguments.formulation}, {"hessian", arguments.hessian}});
+  const std::map<std::string, std::string> about = {{"formulation", arguments.formulation},
+                                                    {"hessian", arguments.hessian}};
+  out.result = solvers::solve_with_ipopt(
+      program, study::saving_checkpoints(program, options, solution, about));
   progress.end();
+  try {
+    study::save_result(program, out.result, solution, about);
+  } catch (const IoError& error) {
+    report_lost(error);
+  }
   out.iterations = progress.iterations();
   out.times = difference(program.times(), before);
   out.code = exit_code(out.result);
 
-  scene::write_file_atomically(arguments.out / "iterations.csv", iterations_csv(out.iterations));
-  scene::write_file_atomically(
-      arguments.out / "trajectory.csv",
-      study::trajectory_csv(study::trajectory_names(program.problem().horizon),
-                            program.trajectory_values(out.result.x)));
+  write_result(arguments.out / "iterations.csv", iterations_csv(out.iterations));
+  write_result(arguments.out / "trajectory.csv",
+               study::trajectory_csv(study::trajectory_names(program.problem().horizon),
+                                     program.trajectory_values(out.result.x)));
   solvers::DiagnosisOptions diagnosis;
   diagnosis.objective_scale = options.objective_scale;
   print(fmt::format("\n{}{}\nwritten: {}/solution.csv, iterations.csv, trajectory.csv\n",

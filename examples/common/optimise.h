@@ -24,11 +24,15 @@ struct OptimiseArguments {
   int max_iterations = 500;
   int segments = 8;  ///< of multiple shooting
   bool check_derivatives = false;
+  double save_every = 10.0;  ///< s; how often solution.csv is written on the way
 };
 
 /// --out, --formulation, --hessian, --resume, --max-iterations, --segments, --check-derivatives,
-/// with the values of `arguments` as defaults.
+/// --save-every, with the values of `arguments` as defaults.
 void add_options(CLI::App& app, OptimiseArguments& arguments);
+
+/// --save-every.
+void add_save_option(CLI::App& app, double& save_every);
 
 /// "exact", "gauss-newton", "limited-memory".
 [[nodiscard]] std::string_view name_of(solvers::HessianKind kind);
@@ -49,8 +53,9 @@ struct Optimised {
 
 /// Solves with Ipopt, shows each iterate, saves the result and describes it in words.
 ///
-/// The first SIGINT stops it with its best point. Into the folder arguments.out it writes
-/// solution.csv (which --resume takes), iterations.csv and trajectory.csv, converged or not.
+/// The first SIGINT or SIGTERM stops it with its best point. Into the folder arguments.out it
+/// writes solution.csv (which --resume takes; on the way, too), iterations.csv and trajectory.csv,
+/// converged or not.
 ///
 /// @param program    also supplies the start, unless there is a solution to resume
 /// @param arguments  see there
@@ -58,7 +63,7 @@ struct Optimised {
 ///                   warm_start if there is a solution to resume
 /// @throws InvalidInput if the solution to resume belongs to another program, or a name is unknown
 /// @throws NumericalFailure if arguments.check_derivatives and a derivative is wrong
-/// @throws IoError if a file or standard output cannot be written
+/// @throws IoError before the work if a file could not be written; see write_result for after it
 [[nodiscard]] Optimised optimise(Transcription& program, const OptimiseArguments& arguments,
                                  solvers::IpoptOptions options = {});
 

@@ -4,9 +4,7 @@
 #include <unistd.h>
 
 #include <iterator>
-#include <system_error>
 
-#include "hbar/core/base/error.h"
 #include "process.h"
 
 namespace hbar::example {
@@ -37,14 +35,6 @@ void Progress::show(const solvers::IterationInfo& info) {
 void Progress::end() const {
   if (terminal_) {
     print("\n");
-  }
-}
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code code;
-  std::filesystem::create_directories(folder, code);
-  if (code) {
-    throw IoError(concat(folder.string(), ": the folder cannot be made: ", code.message()));
   }
 }
 

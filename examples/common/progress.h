@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -32,9 +31,5 @@ class Progress {
 
 /// A row per iterate.
 [[nodiscard]] std::string iterations_csv(const std::vector<solvers::IterationInfo>& iterations);
-
-/// Makes the folder at once, so that a wrong name is detected before the work.
-/// @throws IoError if it cannot be made
-void make_folder(const std::filesystem::path& folder);
 
 }  // namespace hbar::example

@@ -14,7 +14,6 @@
 #include <filesystem>
 
 #include "examples/common/progress.h"
-#include "hbar/core/files/atomic_file.h"
 #include "picture.h"
 #include "report.h"
 #include "studies.h"
@@ -44,16 +43,20 @@ ExitCode compare(const Arguments& arguments) {
 }
 
 ExitCode pareto(const Arguments& arguments) {
+  const auto save = [&arguments](const std::vector<FrontPoint>& front) {
+    example::write_result(folder(arguments) / "pareto.csv", front_csv(front));
+  };
   const std::vector<FrontPoint> front =
       front_of_mass(arguments.scene, arguments.steps, arguments.optimise,
-                    {1.0, 0.8, 0.6, 0.4, 0.3, 0.2, 0.15, 0.1, 0.05});
-  scene::write_file_atomically(folder(arguments) / "pareto.csv", front_csv(front));
+                    {1.0, 0.8, 0.6, 0.4, 0.3, 0.2, 0.15, 0.1, 0.05}, save);
   print(fmt::format("{}written: {}/pareto.csv\n", front_table(front), folder(arguments).string()));
   return example::stop_flag() ? ExitCode::kInterrupted : ExitCode::kOk;
 }
 
 ExitCode run(const Arguments& arguments) {
-  example::make_folder(folder(arguments));
+  const example::StopsGently gently;
+  example::expect_results(folder(arguments), {"result.json", "finger.svg", "pareto.csv"},
+                          {arguments.scene});
   if (arguments.compare) {
     return compare(arguments);
   }
@@ -89,8 +92,8 @@ ExitCode run(const Arguments& arguments) {
   // 3. What came out, converged or not.
   const solvers::IpoptResult& result = outcome.optimised.result;
   outcome.values = program.trajectory_values(result.x);
-  scene::write_file_atomically(folder(arguments) / "result.json", result_json(reach, outcome));
-  scene::write_file_atomically(folder(arguments) / "finger.svg", picture_svg(reach, outcome));
+  example::write_result(folder(arguments) / "result.json", result_json(reach, outcome));
+  example::write_result(folder(arguments) / "finger.svg", picture_svg(reach, outcome));
   print('\n' + summary(reach, outcome));
   print(fmt::format("written:     {0}/result.json, {0}/finger.svg\n", folder(arguments).string()));
   if (arguments.sensitivity && result.converged()) {
@@ -135,7 +138,6 @@ ExitCode run_line(int argc, char** argv) {
 }  // namespace hbar::finger_reach
 
 int main(int argc, char** argv) {
-  hbar::example::prepare_process();
-  return hbar::example::guarded("finger_reach",
-                                [&] { return hbar::finger_reach::run_line(argc, argv); });
+  hbar::example::prepare_process("finger_reach");
+  return hbar::example::guarded([&] { return hbar::finger_reach::run_line(argc, argv); });
 }

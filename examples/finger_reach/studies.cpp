@@ -89,9 +89,17 @@ std::string ways_table(const std::vector<Way>& ways) {
 
 std::vector<FrontPoint> front_of_mass(const std::filesystem::path& scene, int steps,
                                       const example::OptimiseArguments& arguments,
-                                      const std::vector<double>& weights) {
+                                      const std::vector<double>& weights, const SaveFront& save) {
   const TranscriptionOptions transcription = example::transcription_options(arguments);
   Eigen::Index designs = 0;
+  const auto front_of = [&designs](const std::vector<study::ParetoPoint>& points) {
+    std::vector<FrontPoint> front;
+    for (const study::ParetoPoint& point : points) {
+      front.push_back({point, point.optimum.point.x.head(designs)});
+    }
+    return front;
+  };
+  std::vector<study::ParetoPoint> so_far;
   const std::vector<study::ParetoPoint> points =
       study::pareto_sweep(weights, [&](double weight, const solvers::PrimalDualPoint* warm) {
         const Reach reach = make_reach(scene, {.steps = steps,
@@ -107,19 +115,18 @@ std::vector<FrontPoint> front_of_mass(const std::filesystem::path& scene, int st
         }
         const solvers::IpoptResult result = solvers::solve_with_ipopt(*reach.problem, options);
         designs = reach.problem->input_variables().design_count();
-        return study::WeightedOptimum{
+        const study::WeightedOptimum optimum{
             .converged = result.converged(),
             .f1 = effort_of(reach.problem->trajectory_values(result.x)),
             .f2 = finger_mass(reach, result.x),
             .point = result.point(),
             .message =
                 fmt::format("{} after {} iterations", to_string(result.status), result.iterations)};
+        so_far.push_back({.weight = weight, .optimum = optimum});
+        save(front_of(so_far));
+        return optimum;
       });
-  std::vector<FrontPoint> front;
-  for (const study::ParetoPoint& point : points) {
-    front.push_back({point, point.optimum.point.x.head(designs)});
-  }
-  return front;
+  return front_of(points);
 }
 
 std::string front_csv(const std::vector<FrontPoint>& front) {

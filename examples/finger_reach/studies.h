@@ -35,10 +35,16 @@ struct FrontPoint {
   Eigen::VectorXd design;    ///<                                                          [6]
 };
 
+/// Takes the front as far as it is known.
+using SaveFront = std::function<void(const std::vector<FrontPoint>&)>;
+
 /// The least weight · effort + (1 − weight) · mass / 100 g, each from its neighbour's solution.
+///
+/// @param save  called after each point
 [[nodiscard]] std::vector<FrontPoint> front_of_mass(const std::filesystem::path& scene, int steps,
                                                     const example::OptimiseArguments& arguments,
-                                                    const std::vector<double>& weights);
+                                                    const std::vector<double>& weights,
+                                                    const SaveFront& save);
 [[nodiscard]] std::string front_csv(const std::vector<FrontPoint>& front);
 [[nodiscard]] std::string front_table(const std::vector<FrontPoint>& front);
 

@@ -14,7 +14,6 @@
 
 #include "examples/common/optimise.h"
 #include "examples/common/progress.h"
-#include "hbar/core/files/atomic_file.h"
 #include "hbar/core/files/text_file.h"
 #include "report.h"
 
@@ -59,7 +58,10 @@ ExitCode repeat(const Rig& rig, const Arguments& arguments) {
 }
 
 ExitCode run(Arguments arguments) {
-  example::make_folder(arguments.optimise.out);
+  const example::StopsGently gently;
+  example::expect_results(arguments.optimise.out,
+                          {"solution.csv", "iterations.csv", "trajectory.csv", "repeat.csv"},
+                          {arguments.rig.scene, arguments.data});
   const bool simulated = arguments.data.empty();
   arguments.rig.sliding = !arguments.no_sliding;
   arguments.rig.wrong_start = simulated;
@@ -70,7 +72,7 @@ ExitCode run(Arguments arguments) {
   if (simulated) {
     arguments.data = arguments.optimise.out / "measured.csv";
     std::mt19937_64 random(arguments.seed);
-    scene::write_file_atomically(arguments.data, recorded_csv(rig, arguments.sigmas, random));
+    example::write_result(arguments.data, recorded_csv(rig, arguments.sigmas, random));
   }
   const Recording recording = read_recording(
       rig, arguments.sigmas, scene::read_text_file(arguments.data), arguments.data.string());
@@ -135,6 +137,6 @@ ExitCode run_line(int argc, char** argv) {
 }  // namespace hbar::identify
 
 int main(int argc, char** argv) {
-  hbar::example::prepare_process();
-  return hbar::example::guarded("identify", [&] { return hbar::identify::run_line(argc, argv); });
+  hbar::example::prepare_process("identify");
+  return hbar::example::guarded([&] { return hbar::identify::run_line(argc, argv); });
 }

@@ -10,8 +10,7 @@
 #include "tasks.h"
 
 int main(int argc, char** argv) {
-  hbar::example::prepare_process();
-  return hbar::example::guarded("assemble", [&] {
-    return hbar::manipulation::run_task(hbar::manipulation::assemble(), argc, argv);
-  });
+  hbar::example::prepare_process("assemble");
+  return hbar::example::guarded(
+      [&] { return hbar::manipulation::run_task(hbar::manipulation::assemble(), argc, argv); });
 }

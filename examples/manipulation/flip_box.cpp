@@ -10,8 +10,7 @@
 #include "tasks.h"
 
 int main(int argc, char** argv) {
-  hbar::example::prepare_process();
-  return hbar::example::guarded("flip_box", [&] {
-    return hbar::manipulation::run_task(hbar::manipulation::flip_box(), argc, argv);
-  });
+  hbar::example::prepare_process("flip_box");
+  return hbar::example::guarded(
+      [&] { return hbar::manipulation::run_task(hbar::manipulation::flip_box(), argc, argv); });
 }

@@ -11,8 +11,7 @@
 #include "tasks.h"
 
 int main(int argc, char** argv) {
-  hbar::example::prepare_process();
-  return hbar::example::guarded("rotate_box", [&] {
-    return hbar::manipulation::run_task(hbar::manipulation::rotate_box(), argc, argv);
-  });
+  hbar::example::prepare_process("rotate_box");
+  return hbar::example::guarded(
+      [&] { return hbar::manipulation::run_task(hbar::manipulation::rotate_box(), argc, argv); });
 }

@@ -5,9 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "examples/common/optimise.h"
 #include "examples/common/progress.h"
+#include "hbar/adjoint/study/solution_file.h"
 #include "hbar/adjoint/study/trajectory_csv.h"
-#include "hbar/core/files/atomic_file.h"
+#include "hbar/core/base/error.h"
+#include "hbar/core/files/numbers.h"
 
 namespace hbar::manipulation {
 namespace {
@@ -27,6 +30,7 @@ solvers::IpoptOptions ipopt_options(const TaskOptions& options, int iterations_l
   ipopt.number_options["mu_init"] = 1e-3;
   ipopt.string_options["nlp_scaling_method"] = "none";
   ipopt.stop = options.stop;
+  ipopt.checkpoint_every = options.save_every;
   ipopt.on_iteration = [&options](const solvers::IterationInfo& info) {
     if (options.on_iteration) {
       options.on_iteration(info);
@@ -80,26 +84,61 @@ std::string result_json(const Task& task, const TaskResult& result) {
   return out.dump(1) + '\n';
 }
 
-example::ExitCode run(const Task& task, const std::filesystem::path& out, int max_iterations) {
-  example::make_folder(out);
+constexpr const char* kScaleEntry = "contact scale";
+
+/// The stage that a solution was saved in.
+double stage_of(const std::filesystem::path& file) {
+  const std::map<std::string, std::string> about = study::read_solution(file).about;
+  const auto entry = about.find(kScaleEntry);
+  std::string reason;
+  const std::optional<double> scale =
+      entry == about.end() ? std::nullopt : scene::parse_number(entry->second, reason);
+  if (!scale) {
+    throw InvalidInput(concat(file.string(), ": no \"", kScaleEntry,
+                              "\" is told: this is no solution of a manipulation task"));
+  }
+  return *scale;
+}
+
+/// One stage, from a point with or without multipliers.
+solvers::IpoptResult solve_stage(Transcription& program, solvers::IpoptOptions ipopt, double scale,
+                                 const TaskOptions& options) {
+  if (options.solution.empty()) {
+    return solvers::solve_with_ipopt(program, ipopt);
+  }
+  const std::map<std::string, std::string> about = {{kScaleEntry, scene::format_number(scale)}};
+  solvers::IpoptResult result = solvers::solve_with_ipopt(
+      program, study::saving_checkpoints(program, std::move(ipopt), options.solution, about));
+  try {
+    study::save_result(program, result, options.solution, about);
+  } catch (const IoError& error) {
+    example::report_lost(error);
+  }
+  return result;
+}
+
+example::ExitCode run(const Task& task, const std::filesystem::path& out, TaskOptions options) {
+  const example::StopsGently gently;
+  example::expect_results(out, {"result.json", "solution.csv", "trajectory.csv", "iterations.csv"},
+                          {task.scene});
   example::print(fmt::format("{}: {}\n{}\n", task.name, task.title, example::progress_heading()));
   example::Progress progress;
-  TaskOptions options;
-  options.max_iterations = max_iterations;
+  options.solution = out / "solution.csv";
   options.stop = &example::stop_flag();
   options.on_iteration = [&](const solvers::IterationInfo& info) { progress.show(info); };
   const TaskResult result = solve_task(task, options);
   progress.end();
-  scene::write_file_atomically(out / "result.json", result_json(task, result));
-  scene::write_file_atomically(
+  example::write_result(out / "result.json", result_json(task, result));
+  example::write_result(
       out / "trajectory.csv",
       study::trajectory_csv(study::trajectory_names(result.problem->problem().horizon),
                             result.values));
-  scene::write_file_atomically(out / "iterations.csv",
-                               example::iterations_csv(progress.iterations()));
+  example::write_result(out / "iterations.csv", example::iterations_csv(progress.iterations()));
   example::print(summary(task, result));
   example::print(
-      fmt::format("written:     {}/result.json, trajectory.csv, iterations.csv\n", out.string()));
+      fmt::format("written:     {}/result.json, solution.csv, trajectory.csv, "
+                  "iterations.csv\n",
+                  out.string()));
   if (result.last.status == solvers::IpoptStatus::kInterrupted) {
     return example::ExitCode::kInterrupted;
   }
@@ -126,20 +165,33 @@ TaskResult solve_task(const Task& task, const TaskOptions& options) {
                                    full->trajectory_values(full->variables().start));
   }
   Eigen::VectorXd x;
+  const double first = options.resume.empty() ? 0.0 : stage_of(options.resume);
   for (const double scale : task.contact_scales) {
+    if (!options.resume.empty() && x.size() == 0 && scale != first) {
+      continue;
+    }
     out.problem = make_problem(task, scale, x);
     if (x.size() == 0) {
       out.start_objective = out.problem->objective(out.problem->variables().start);
     }
+    const bool resumed = !options.resume.empty() && x.size() == 0;
     // Only the last stage is worth the last digits.
     const double enough = scale == task.contact_scales.back() ? task.enough : 6e-2;
-    out.last = solvers::solve_with_ipopt(
-        *out.problem, ipopt_options(options, options.max_iterations - out.iterations, enough));
+    solvers::IpoptOptions ipopt =
+        ipopt_options(options, options.max_iterations - out.iterations, enough);
+    if (resumed) {
+      ipopt.warm_start = study::load_solution(options.resume, *out.problem);
+    }
+    out.last = solve_stage(*out.problem, std::move(ipopt), scale, options);
     out.iterations += out.last.iterations;
     x = out.last.x;
     if (out.last.status == solvers::IpoptStatus::kInterrupted) {
       break;
     }
+  }
+  if (out.problem == nullptr) {
+    throw InvalidInput(
+        concat(options.resume.string(), ": its contact scale ", first, " is none of this task's"));
   }
   out.values = out.problem->trajectory_values(out.last.x);
   out.errors = goal_errors(task, out.problem->problem().horizon.model(), out.values);
@@ -148,18 +200,20 @@ TaskResult solve_task(const Task& task, const TaskOptions& options) {
 
 example::ExitCode run_task(const Task& task, int argc, char** argv) {
   std::filesystem::path out = "results/" + task.name;
-  int max_iterations = 100;
+  TaskOptions options;
   CLI::App app(task.title, task.name);
   app.add_option("--out", out, "Folder for the results.")->capture_default_str();
-  app.add_option("--max-iterations", max_iterations, "Of Ipopt.")
+  app.add_option("--max-iterations", options.max_iterations, "Of Ipopt.")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
+  app.add_option("--resume", options.resume, "A solution.csv to start from.");
+  example::add_save_option(app, options.save_every);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? example::ExitCode::kOk : example::ExitCode::kUsage;
   }
-  return run(task, out, max_iterations);
+  return run(task, out, std::move(options));
 }
 
 }  // namespace hbar::manipulation

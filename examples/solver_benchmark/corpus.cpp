@@ -7,7 +7,7 @@
 
 #include "families.h"
 #include "hbar/core/base/error.h"
-#include "hbar/core/files/atomic_file.h"
+#include "hbar/core/files/result_file.h"
 #include "hbar/solvers/linear/accuracy.h"
 #include "hbar/suite.h"
 #include "matrix_market.h"
@@ -120,7 +120,7 @@ void write_corpus_matrix(const BenchmarkMatrix& given, const fs::path& folder) {
   write_vector(folder / (name + "_x.mtx"), reference.x, "solution of " + comment);
   const double error =
       solvers::normwise_backward_error(matrix.A, solvers::System::kPlain, reference.x, matrix.b);
-  scene::write_file_atomically(folder / (name + ".json"), sidecar_json(matrix, error));
+  scene::write_result_file(folder / (name + ".json"), sidecar_json(matrix, error));
 }
 
 std::vector<fs::path> find_matrix_files(const fs::path& folder) {

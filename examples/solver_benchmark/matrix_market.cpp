@@ -12,8 +12,8 @@
 #include <system_error>
 
 #include "hbar/core/base/error.h"
-#include "hbar/core/files/atomic_file.h"
 #include "hbar/core/files/numbers.h"
+#include "hbar/core/files/result_file.h"
 #include "hbar/core/files/text_file.h"
 
 namespace hbar::solver_benchmark {
@@ -213,7 +213,7 @@ void write_matrix(const std::filesystem::path& file, const solvers::SparseMatrix
   const std::string text = written([&](FILE* stream) {
     return cholmod_write_sparse(stream, &view, nullptr, nullptr, common.get());
   });
-  scene::write_file_atomically(file, with_comment(text, comment));
+  scene::write_result_file(file, with_comment(text, comment));
 }
 
 void write_vector(const std::filesystem::path& file, const Eigen::VectorXd& x,
@@ -230,7 +230,7 @@ void write_vector(const std::filesystem::path& file, const Eigen::VectorXd& x,
   view.dtype = CHOLMOD_DOUBLE;
   const std::string text = written(
       [&](FILE* stream) { return cholmod_write_dense(stream, &view, nullptr, common.get()); });
-  scene::write_file_atomically(file, with_comment(text, comment));
+  scene::write_result_file(file, with_comment(text, comment));
 }
 
 }  // namespace hbar::solver_benchmark

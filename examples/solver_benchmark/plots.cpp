@@ -7,7 +7,7 @@
 #include <map>
 
 #include "gnuplot.h"
-#include "hbar/core/files/atomic_file.h"
+#include "hbar/core/files/result_file.h"
 
 namespace hbar::solver_benchmark {
 namespace {
@@ -117,8 +117,8 @@ std::vector<Plot> benchmark_plots(const BenchmarkResults& results) {
 
 void write_plots(const std::vector<Plot>& plots, const std::filesystem::path& folder) {
   for (const Plot& plot : plots) {
-    scene::write_file_atomically(folder / (plot.name + ".dat"), plot.data);
-    scene::write_file_atomically(folder / (plot.name + ".gp"), plot.script);
+    scene::write_result_file(folder / (plot.name + ".dat"), plot.data);
+    scene::write_result_file(folder / (plot.name + ".gp"), plot.script);
     run_gnuplot(folder, plot.name + ".gp");
   }
 }

@@ -117,6 +117,9 @@ class Run {
       tell(matrix.label.name + ' ' + entrant.solver);
       out.measurements.push_back(
           measure(matrix, reference, entrant.solver, entrant.ordering, plan_.options));
+      if (plan_.on_measured) {
+        plan_.on_measured(results_);
+      }
     }
   }
 

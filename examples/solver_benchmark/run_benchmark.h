@@ -21,6 +21,8 @@ struct BenchmarkPlan {
   std::function<void(std::size_t, std::size_t, const std::string&)> on_progress;
   /// Called with every matrix, if it is there.
   std::function<void(const BenchmarkMatrix&)> on_matrix;
+  /// Called after every measurement with all so far, if it is there.
+  std::function<void(const BenchmarkResults&)> on_measured;
 };
 
 /// @throws InvalidInput for a solver that is not known, or if none of the solvers offers any of the

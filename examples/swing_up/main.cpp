@@ -28,7 +28,7 @@ struct Arguments {
 };
 
 ExitCode run(const Arguments& arguments) {
-  example::make_folder(arguments.optimise.out);
+  const example::StopsGently gently;
   if (arguments.scaling) {
     print(scaling_table(measure_scaling(arguments.scene, {100, 1000, 10000})));
     return example::stop_flag() ? ExitCode::kInterrupted : ExitCode::kOk;
@@ -72,6 +72,6 @@ ExitCode run_line(int argc, char** argv) {
 }  // namespace hbar::swing_up
 
 int main(int argc, char** argv) {
-  hbar::example::prepare_process();
-  return hbar::example::guarded("swing_up", [&] { return hbar::swing_up::run_line(argc, argv); });
+  hbar::example::prepare_process("swing_up");
+  return hbar::example::guarded([&] { return hbar::swing_up::run_line(argc, argv); });
 }

@@ -167,7 +167,6 @@ example::ExitCode compare_hessians(const SwingUp& swing_up,
        {HessianKind::kExact, HessianKind::kGaussNewton, HessianKind::kLimitedMemory}) {
     arguments.hessian = example::name_of(kind);
     arguments.out = given.out / arguments.hessian;
-    example::make_folder(arguments.out);
     const std::unique_ptr<Transcription> program = begin(swing_up, arguments);
     const double start = cpu_time();
     const example::Optimised found = example::optimise(*program, arguments, ipopt_options());
@@ -181,7 +180,6 @@ example::ExitCode compare_hessians(const SwingUp& swing_up,
   }
   arguments.hessian = example::name_of(HessianKind::kExact);
   arguments.out = given.out / "fixed-barrier";
-  example::make_folder(arguments.out);
   const std::unique_ptr<Transcription> program = begin(swing_up, arguments);
   const example::Optimised found =
       example::optimise(*program, arguments, fixed_barrier_options(kBarrier));

@@ -12,7 +12,6 @@
 #include "hbar/core/files/numbers.h"
 #include "labels.h"
 #include "option_values.h"
-#include "process.h"
 
 namespace hbar::tool {
 namespace {

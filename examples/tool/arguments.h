@@ -29,7 +29,7 @@ struct Arguments {
 using CommandLine = std::variant<Arguments, SolverArguments, CorpusArguments, std::string>;
 
 /// Reads the command line.
-/// @throws ToolError (kUsage) naming the option, what was found and what is allowed
+/// @throws ProgramError (kUsage) naming the option, what was found and what is allowed
 [[nodiscard]] CommandLine parse_arguments(int argc, const char* const* argv);
 
 }  // namespace hbar::tool

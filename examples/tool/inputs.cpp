@@ -6,16 +6,19 @@
 #include <cctype>
 
 #include "entries.h"
+#include "examples/common/process.h"
 #include "hbar/core/files/numbers.h"
 #include "hbar/core/files/text_file.h"
 #include "labels.h"
-#include "process.h"
 
 namespace hbar::tool {
+
+using example::ExitCode;
+using example::ProgramError;
 namespace {
 
 [[noreturn]] void bad_file(const std::string& message) {
-  throw ToolError(ExitCode::kBadScene, message);
+  throw ProgramError(ExitCode::kBadScene, message);
 }
 
 std::string counted(std::size_t count, std::string_view noun, std::string_view plural) {
@@ -94,10 +97,10 @@ void set_state(const std::optional<std::vector<double>>& given, std::string_view
     return;
   }
   if (given->size() != static_cast<std::size_t>(model.dof())) {
-    throw ToolError(ExitCode::kUsage,
-                    fmt::format("{}: {}; one per coordinate is needed: {}", option,
-                                counted(given->size(), "entry", "entries"),
-                                fmt::join(coordinate_names(model), ", ")));
+    throw ProgramError(ExitCode::kUsage,
+                       fmt::format("{}: {}; one per coordinate is needed: {}", option,
+                                   counted(given->size(), "entry", "entries"),
+                                   fmt::join(coordinate_names(model), ", ")));
   }
   state =
       Eigen::Map<const Eigen::VectorXd>(given->data(), static_cast<Eigen::Index>(given->size()));
@@ -118,9 +121,9 @@ LoadedProblem load(const Arguments& arguments) {
     }
     return loaded;
   } catch (const InvalidOption& error) {
-    throw ToolError(ExitCode::kUsage, error.what());
+    throw ProgramError(ExitCode::kUsage, error.what());
   } catch (const InvalidInput& error) {
-    throw ToolError(ExitCode::kBadScene, error.what());
+    throw ProgramError(ExitCode::kBadScene, error.what());
   }
 }
 

@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <exception>
-#include <new>
+#include <variant>
 
 #include "arguments.h"
+#include "examples/common/process.h"
 #include "gradient_solver.h"
 #include "inputs.h"
 #include "outputs.h"
-#include "process.h"
 #include "results.h"
 #ifdef HBAR_HAVE_SUITE
 #include "solver_commands.h"
@@ -18,6 +17,13 @@
 #include "text_output.h"
 
 namespace hbar::tool {
+
+using example::ExitCode;
+using example::print;
+using example::ProgramError;
+using example::stop_flag;
+using example::StopsGently;
+using example::write_message;
 namespace {
 
 void check_outputs(const Arguments& arguments, const LoadedProblem& loaded) {
@@ -84,12 +90,12 @@ ExitCode simulate(const Arguments& arguments, const LoadedProblem& loaded) {
     write_output(*arguments.csv, results_csv(loaded, results));
   }
   if (!arguments.out && arguments.csv != "-") {
-    write_stdout(summarize(loaded, results));
+    print(summarize(loaded, results));
   }
   if (results.status == "converged") {
     return ExitCode::kOk;
   }
-  throw ToolError(
+  throw ProgramError(
       results.status == "interrupted" ? ExitCode::kInterrupted : ExitCode::kSimulationFailed,
       results.message);
 }
@@ -97,15 +103,15 @@ ExitCode simulate(const Arguments& arguments, const LoadedProblem& loaded) {
 ExitCode check(const Arguments& arguments, const LoadedProblem& loaded) {
   const GradientCheckReport report = check_gradient(loaded.problem);
   if (stop_flag()) {
-    throw ToolError(ExitCode::kInterrupted, "gradient check interrupted");
+    throw ProgramError(ExitCode::kInterrupted, "gradient check interrupted");
   }
   if (arguments.out) {
     write_output(*arguments.out, check_json(loaded, report));
   } else {
-    write_stdout(report.table());
+    print(report.table());
   }
   if (!report.passed()) {
-    throw ToolError(ExitCode::kCheckFailed, "the gradient of a class is not confirmed");
+    throw ProgramError(ExitCode::kCheckFailed, "the gradient of a class is not confirmed");
   }
   if (!report.unresolved().empty()) {
     write_message(fmt::format(
@@ -123,9 +129,10 @@ ExitCode run_command(const Arguments& given) {
     write_message(notice);
   }
   check_outputs(arguments, loaded);
+  const StopsGently gently;
   switch (arguments.command) {
     case Command::kInfo:
-      write_stdout(describe(loaded.problem.horizon.model(), loaded.problem.horizon.parameters()));
+      print(describe(loaded.problem.horizon.model(), loaded.problem.horizon.parameters()));
       return ExitCode::kOk;
     case Command::kSimulate:
     case Command::kGradient:
@@ -144,9 +151,9 @@ ExitCode run_command(const SolverArguments& arguments) { return run_solvers(argu
 ExitCode run_command(const CorpusArguments& arguments) { return run_corpus(arguments); }
 #else
 [[noreturn]] void say_no_suite() {
-  throw ToolError(ExitCode::kUsage,
-                  "this build has no hbar::suite, whose solvers are measured; configure with "
-                  "-DHBAR_WITH_SUITE=ON");
+  throw ProgramError(ExitCode::kUsage,
+                     "this build has no hbar::suite, whose solvers are measured; configure with "
+                     "-DHBAR_WITH_SUITE=ON");
 }
 ExitCode run_command(const SolverArguments& /*arguments*/) { say_no_suite(); }
 ExitCode run_command(const CorpusArguments& /*arguments*/) { say_no_suite(); }
@@ -154,7 +161,7 @@ ExitCode run_command(const CorpusArguments& /*arguments*/) { say_no_suite(); }
 
 /// Help or version.
 ExitCode run_command(const std::string& text) {
-  write_stdout(text);
+  print(text);
   return ExitCode::kOk;
 }
 
@@ -163,37 +170,10 @@ ExitCode run_line(int argc, const char* const* argv) {
                     parse_arguments(argc, argv));
 }
 
-/// What is thrown, as an exit code and a line on standard error.
-ExitCode guarded(int argc, const char* const* argv) {
-  try {
-    return run_line(argc, argv);
-  } catch (const ToolError& error) {
-    if (*error.what() != '\0') {
-      write_message(error.what());
-    }
-    return error.code();
-  } catch (const IoError& error) {
-    write_message(error.what());
-    return ExitCode::kInputOutput;
-  } catch (const InvalidInput& error) {
-    write_message(error.what());
-    return ExitCode::kBadScene;
-  } catch (const NumericalFailure& error) {
-    write_message(error.what());
-    return stop_flag() ? ExitCode::kInterrupted : ExitCode::kSimulationFailed;
-  } catch (const std::bad_alloc&) {
-    write_message("out of memory; take fewer steps or parameters");
-    return ExitCode::kOutOfMemory;
-  } catch (const std::exception& error) {
-    write_message(error.what());
-    return ExitCode::kSimulationFailed;
-  }
-}
-
 }  // namespace
 }  // namespace hbar::tool
 
 int main(int argc, char** argv) {
-  hbar::tool::prepare_process();
-  return static_cast<int>(hbar::tool::guarded(argc, argv));
+  hbar::example::prepare_process("hbar");
+  return hbar::example::guarded([&] { return hbar::tool::run_line(argc, argv); });
 }

@@ -5,12 +5,15 @@
 #include <algorithm>
 
 #include "entries.h"
+#include "examples/common/process.h"
 #include "hbar/adjoint/trajectory/integrator.h"
 #include "hbar/core/base/nearest_name.h"
 #include "hbar/core/files/numbers.h"
-#include "process.h"
 
 namespace hbar::tool {
+
+using example::ExitCode;
+using example::ProgramError;
 namespace {
 
 int read_count(const std::string& name, const std::string& text) {
@@ -27,7 +30,7 @@ int read_count(const std::string& name, const std::string& text) {
 
 }  // namespace
 
-void usage(const std::string& message) { throw ToolError(ExitCode::kUsage, message); }
+void usage(const std::string& message) { throw ProgramError(ExitCode::kUsage, message); }
 
 std::optional<std::string> value_of(const Given& given, const std::string& name) {
   const auto place = given.find(name);

@@ -11,14 +11,14 @@ namespace hbar::tool {
 /// Values of the options that were given, by name.
 using Given = std::map<std::string, std::string>;
 
-/// Throws a ToolError (kUsage).
+/// Throws a ProgramError (kUsage).
 [[noreturn]] void usage(const std::string& message);
 
 /// The text of an option, if it was given.
 [[nodiscard]] std::optional<std::string> value_of(const Given& given, const std::string& name);
 
 // Each of the following reads one option, returns nothing if it was not given, and throws a
-// ToolError (kUsage) that names the option if its text is not what it should be.
+// ProgramError (kUsage) that names the option if its text is not what it should be.
 
 /// A number > 0.
 [[nodiscard]] std::optional<double> positive_number(const Given& given, const std::string& name);
@@ -35,7 +35,7 @@ using Given = std::map<std::string, std::string>;
 /// A file's or a folder's name, which is not empty.
 [[nodiscard]] std::optional<std::string> file(const Given& given, const std::string& name);
 
-/// Throws a ToolError (kUsage) that suggests the nearest name unless `text` is one of them.
+/// Throws a ProgramError (kUsage) that suggests the nearest name unless `text` is one of them.
 void check_name(const std::string& option, const std::string& text,
                 const std::vector<std::string>& names);
 

@@ -12,22 +12,17 @@ namespace hbar::tool {
 ///
 /// @param output  a file; "-" is standard output
 /// @param inputs  files that the run reads
-/// @throws ToolError (kInputOutput)
+/// @throws IoError
 void check_output(const std::optional<std::string>& output,
                   const std::vector<std::filesystem::path>& inputs);
 
 /// Refuses two results that would go to one file.
 ///
-/// @throws ToolError (kUsage) naming the two options
+/// @throws ProgramError (kUsage) naming the two options
 void check_distinct(const std::string& option_a, const std::optional<std::string>& a,
                     const std::string& option_b, const std::optional<std::string>& b);
 
-/// Writes a text to standard output ("-") or, atomically, to a file.
+/// Writes a text to standard output ("-") or as a result file (example::write_result).
 void write_output(const std::string& output, const std::string& text);
-
-/// Creates a folder and its parents if needed.
-///
-/// @throws ToolError (kInputOutput)
-void make_output_folder(const std::string& folder);
 
 }  // namespace hbar::tool

@@ -35,11 +35,11 @@ struct CorpusArguments {
   std::vector<std::string> sizes;
 };
 
-/// @throws ToolError (kUsage) naming the option, what was found and what is allowed
+/// @throws ProgramError (kUsage) naming the option, what was found and what is allowed
 [[nodiscard]] SolverArguments read_solver_arguments(const std::vector<std::string>& scenes,
                                                     const Given& given);
 
-/// @throws ToolError (kUsage) as read_solver_arguments
+/// @throws ProgramError (kUsage) as read_solver_arguments
 [[nodiscard]] CorpusArguments read_corpus_arguments(const std::string& folder, const Given& given);
 
 }  // namespace hbar::tool

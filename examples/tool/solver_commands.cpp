@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 
 #include "examples/common/progress_bar.h"
@@ -18,6 +19,11 @@
 #include "outputs.h"
 
 namespace hbar::tool {
+
+using example::ExitCode;
+using example::print;
+using example::ProgramError;
+using example::stop_flag;
 namespace {
 
 namespace fs = std::filesystem;
@@ -133,11 +139,12 @@ void check_outputs(const SolverArguments& arguments, const BenchmarkPlan& plan) 
   check_distinct("--json", arguments.json, "--csv", arguments.csv);
   if (arguments.plots) {
     if (!benchmark::has_gnuplot()) {
-      throw ToolError(ExitCode::kInputOutput,
-                      "--plots: gnuplot, which draws them, was not found (Debian: apt-get install "
-                      "gnuplot-nox)");
+      throw ProgramError(
+          ExitCode::kInputOutput,
+          "--plots: gnuplot, which draws them, was not found (Debian: apt-get install "
+          "gnuplot-nox)");
     }
-    make_output_folder(*arguments.plots);
+    example::expect_results(*arguments.plots, {"profile.svg"}, inputs);
   }
 }
 
@@ -155,8 +162,42 @@ class SpyPlots {
   std::set<std::string> seen_;
 };
 
-BenchmarkResults measure_all(BenchmarkPlan& plan, SpyPlots* spies) {
+void write_files(const SolverArguments& arguments, const BenchmarkResults& results) {
+  if (arguments.json) {
+    write_output(*arguments.json, benchmark::results_json(results));
+  }
+  if (arguments.csv) {
+    write_output(*arguments.csv, benchmark::results_csv(results));
+  }
+}
+
+/// Writes the files every few seconds, so that a process that is killed has lost little.
+class Saver {
+ public:
+  explicit Saver(const SolverArguments& arguments) : arguments_(arguments) {}
+
+  void save(BenchmarkResults results) {
+    constexpr std::chrono::seconds kEvery(5);
+    const auto now = std::chrono::steady_clock::now();
+    if (arguments_.json == "-" || arguments_.csv == "-" || now - last_ < kEvery) {
+      return;
+    }
+    last_ = now;
+    results.interrupted = true;
+    write_files(arguments_, results);
+  }
+
+ private:
+  const SolverArguments& arguments_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+BenchmarkResults measure_all(const SolverArguments& arguments, BenchmarkPlan& plan,
+                             SpyPlots* spies) {
+  const example::StopsGently gently;
   example::ProgressBar bar;
+  Saver saver(arguments);
+  plan.on_measured = [&saver](const BenchmarkResults& results) { saver.save(results); };
   plan.on_progress = [&bar](std::size_t done, std::size_t total, const std::string& next) {
     bar.show(done, total, next);
   };
@@ -179,15 +220,10 @@ ExitCode run_solvers(const SolverArguments& arguments) {
   BenchmarkPlan plan = plan_of(arguments);
   check_outputs(arguments, plan);
   SpyPlots spies;
-  const BenchmarkResults results = measure_all(plan, arguments.plots ? &spies : nullptr);
-  if (arguments.json) {
-    write_output(*arguments.json, benchmark::results_json(results));
-  }
-  if (arguments.csv) {
-    write_output(*arguments.csv, benchmark::results_csv(results));
-  }
+  const BenchmarkResults results = measure_all(arguments, plan, arguments.plots ? &spies : nullptr);
+  write_files(arguments, results);
   if (arguments.json != "-" && arguments.csv != "-") {
-    write_stdout(benchmark::results_table(results));
+    print(benchmark::results_table(results));
   }
   if (arguments.plots) {
     std::vector<Plot> plots = benchmark::benchmark_plots(results);
@@ -195,12 +231,12 @@ ExitCode run_solvers(const SolverArguments& arguments) {
     benchmark::write_plots(plots, *arguments.plots);
   }
   if (results.interrupted) {
-    throw ToolError(ExitCode::kInterrupted,
-                    fmt::format("interrupted after {} of {} matrices", results.matrices.size(),
-                                plan.cases.size() + plan.files.size()));
+    throw ProgramError(ExitCode::kInterrupted,
+                       fmt::format("interrupted after {} of {} matrices", results.matrices.size(),
+                                   plan.cases.size() + plan.files.size()));
   }
   if (nothing_measured(results)) {
-    throw ToolError(ExitCode::kBadScene, results.matrices.front().failure);
+    throw ProgramError(ExitCode::kBadScene, results.matrices.front().failure);
   }
   return ExitCode::kOk;
 }
@@ -222,18 +258,19 @@ ExitCode run_corpus(const CorpusArguments& arguments) {
       static_cast<void>(scene::read_text_file(which.scene));  // what is missing is said at once
     }
   }
-  make_output_folder(arguments.folder);
+  example::expect_results(arguments.folder, {"matrix.mtx"});
+  const example::StopsGently gently;
   example::ProgressBar bar;
   benchmark::CaseAssembler assembler(&stop_flag());
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (stop_flag()) {
-      throw ToolError(ExitCode::kInterrupted,
-                      fmt::format("interrupted after {} of {} matrices", i, cases.size()));
+      throw ProgramError(ExitCode::kInterrupted,
+                         fmt::format("interrupted after {} of {} matrices", i, cases.size()));
     }
     bar.show(i, cases.size(), name_of(cases[i]));
     benchmark::write_corpus_matrix(assembler.assemble(cases[i]), arguments.folder);
   }
-  write_stdout(fmt::format("{} matrices written to {}\n", cases.size(), arguments.folder));
+  print(fmt::format("{} matrices written to {}\n", cases.size(), arguments.folder));
   return ExitCode::kOk;
 }
 

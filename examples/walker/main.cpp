@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "examples/common/progress.h"
-#include "hbar/core/files/atomic_file.h"
 #include "report.h"
 
 namespace hbar::walker {
@@ -68,9 +67,10 @@ Stage solve(const Step& step, Arguments arguments, const std::vector<Stage>& ear
 }
 
 ExitCode run(const Arguments& arguments) {
+  const example::StopsGently gently;
+  example::expect_results(arguments.optimise.out, {"result.json"}, {arguments.plan.scene});
   std::vector<Stage> stages;
   for (const Step& step : kSteps) {
-    example::make_folder(folder_of(step, arguments));
     example::print(fmt::format("\nwalker: {}\n", step.title));
     stages.push_back(solve(step, arguments, stages));
     const example::Optimised& outcome = stages.back().outcome;
@@ -78,8 +78,8 @@ ExitCode run(const Arguments& arguments) {
       return outcome.code;
     }
   }
-  scene::write_file_atomically(arguments.optimise.out / "result.json",
-                               result_json(arguments.plan, stages));
+  example::write_result(arguments.optimise.out / "result.json",
+                        result_json(arguments.plan, stages));
   example::print(summary(arguments.plan, stages));
   return stages.back().outcome.code;
 }
@@ -121,6 +121,6 @@ ExitCode run_line(int argc, char** argv) {
 }  // namespace hbar::walker
 
 int main(int argc, char** argv) {
-  hbar::example::prepare_process();
-  return hbar::example::guarded("walker", [&] { return hbar::walker::run_line(argc, argv); });
+  hbar::example::prepare_process("walker");
+  return hbar::example::guarded([&] { return hbar::walker::run_line(argc, argv); });
 }

@@ -32,6 +32,8 @@ struct IterationInfo {
   double elapsed = 0.0;             ///< wall time since the start, s
 };
 
+struct IpoptResult;
+
 /// Options for Ipopt.
 struct IpoptOptions {
   double tolerance = 1e-8;  ///< scaled optimality error of an optimum
@@ -56,6 +58,11 @@ struct IpoptOptions {
 
   /// Called at every iterate; returning false stops. Exceptions propagate out of solve_with_ipopt.
   std::function<bool(const IterationInfo&)> on_iteration = {};
+  /// Called as soon as a point was evaluated and then whenever checkpoint_every has passed, between
+  /// evaluations and iterates, with what the result would be if Ipopt were interrupted now.
+  /// Exceptions propagate out of solve_with_ipopt.
+  std::function<void(const IpoptResult&)> on_checkpoint = {};
+  double checkpoint_every = 10.0;  ///< ≥ 0, s; 0: at every evaluation
   /// Stops soon after it becomes true (a signal handler may set it); may be null.
   const std::atomic<bool>* stop = nullptr;
 };

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "hbar/solvers/linear/mutual_exclusion.h"
+#include "hbar/solvers/nlp/ipopt_iterate.h"
 #include "hbar/solvers/nlp/scaled_nlp.h"
 
 namespace hbar::solvers {
@@ -55,7 +56,8 @@ class Adapter final : public Ipopt::TNLP {
  public:
   /// @param mumps  held by this thread; given back during the callbacks
   Adapter(Nlp& nlp, const IpoptOptions& options, std::unique_lock<std::mutex>& mumps)
-      : options_(options),
+      : nlp_(nlp),
+        options_(options),
         mumps_(mumps),
         program_(nlp, options.constraint_tolerance, options.objective_scale, options.hessian) {
     PrimalDualPoint start;
@@ -144,10 +146,14 @@ class Adapter final : public Ipopt::TNLP {
   bool intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, Number objective,
                              Number inf_pr, Number inf_du, Number mu, Number d_norm,
                              Number regularization, Number, Number alpha_primal, Index trials,
-                             const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+                             const Ipopt::IpoptData* data,
+                             Ipopt::IpoptCalculatedQuantities* computed) override {
+    if (options_.on_checkpoint) {
+      static_cast<void>(read_ipopt_iterate(*this, data, computed, last_));  // or the one before
+    }
     const Unlocked callback(mumps_);
-    result_.iterations = iteration;
-    result_.mu = mu;
+    iterations_ = iteration;
+    mu_ = mu;
     if (must_stop()) {
       return false;
     }
@@ -186,7 +192,7 @@ class Adapter final : public Ipopt::TNLP {
   }
 
   /// The result, given how Ipopt says it ended.
-  [[nodiscard]] IpoptResult take_result(IpoptStatus status, Nlp& nlp);
+  [[nodiscard]] IpoptResult result(IpoptStatus status);
 
  private:
   [[nodiscard]] Eigen::Index n() const { return program_.variable_count(); }
@@ -205,6 +211,10 @@ class Adapter final : public Ipopt::TNLP {
     if (exception() != nullptr) {
       return true;
     }
+    save_if_due();
+    if (exception() != nullptr) {
+      return true;
+    }
     if (stopped_ || !program_.evaluator().best().found) {
       return stopped_.has_value();
     }
@@ -216,6 +226,21 @@ class Adapter final : public Ipopt::TNLP {
     return stopped_.has_value();
   }
 
+  /// Hands out a checkpoint if it is time for one.
+  void save_if_due() {
+    if (!options_.on_checkpoint || !program_.evaluator().best().found ||
+        (saved_at_ && elapsed() - *saved_at_ < options_.checkpoint_every)) {
+      return;
+    }
+    saved_at_ = elapsed();
+    try {
+      options_.on_checkpoint(result(IpoptStatus::kInterrupted));
+    } catch (...) {
+      exception_ = std::current_exception();
+    }
+  }
+
+  Nlp& nlp_;
   const IpoptOptions& options_;
   std::unique_lock<std::mutex>& mumps_;
   ScaledNlp program_;
@@ -225,11 +250,15 @@ class Adapter final : public Ipopt::TNLP {
   Clock::time_point begin_ = Clock::now();
   std::optional<IpoptStatus> stopped_;
   std::exception_ptr exception_;
-  IpoptResult result_;
+  std::optional<double> saved_at_;  // elapsed() at the last checkpoint
+  int iterations_ = 0;
+  double mu_ = 0.0;
 };
 
-IpoptResult Adapter::take_result(IpoptStatus status, Nlp& nlp) {
-  IpoptResult& r = result_;
+IpoptResult Adapter::result(IpoptStatus status) {
+  IpoptResult r;
+  r.iterations = iterations_;
+  r.mu = mu_;
   r.status = stopped_.value_or(status);
   NlpEvaluator& evaluator = program_.evaluator();
   const PrimalDualPoint last = program_.unscaled(last_);
@@ -253,7 +282,7 @@ IpoptResult Adapter::take_result(IpoptStatus status, Nlp& nlp) {
     r.c.setConstant(m(), std::numeric_limits<double>::quiet_NaN());
     r.objective = std::numeric_limits<double>::quiet_NaN();
   }
-  r.violation = largest_violation(nlp, r.x, r.c);
+  r.violation = largest_violation(nlp_, r.x, r.c);
   r.feasible = best.found && r.violation.relative <= options_.constraint_tolerance;
   r.evaluations = evaluator.counts();
   r.elapsed = elapsed();
@@ -277,47 +306,6 @@ IpoptResult Adapter::take_result(IpoptStatus status, Nlp& nlp) {
   return r;
 }
 
-// Ipopt's numbers changed between versions, its names did not.
-IpoptStatus translate(Ipopt::ApplicationReturnStatus status) {
-  switch (status) {
-    case Ipopt::Solve_Succeeded:
-      return IpoptStatus::kOptimal;
-    case Ipopt::Solved_To_Acceptable_Level:
-      return IpoptStatus::kAcceptable;
-    case Ipopt::Infeasible_Problem_Detected:
-      return IpoptStatus::kInfeasible;
-    case Ipopt::Search_Direction_Becomes_Too_Small:
-      return IpoptStatus::kStepTooSmall;
-    case Ipopt::Diverging_Iterates:
-      return IpoptStatus::kDiverging;
-    case Ipopt::User_Requested_Stop:
-      return IpoptStatus::kStopped;
-    case Ipopt::Feasible_Point_Found:
-      return IpoptStatus::kFeasible;
-    case Ipopt::Maximum_Iterations_Exceeded:
-      return IpoptStatus::kIterationLimit;
-    case Ipopt::Restoration_Failed:
-      return IpoptStatus::kRestorationFailed;
-    case Ipopt::Error_In_Step_Computation:
-      return IpoptStatus::kStepFailed;
-    case Ipopt::Maximum_CpuTime_Exceeded:
-      return IpoptStatus::kTimeLimit;
-#if defined(IPOPT_VERSION_MINOR) && \
-    (IPOPT_VERSION_MAJOR > 3 || (IPOPT_VERSION_MAJOR == 3 && IPOPT_VERSION_MINOR >= 14))
-    case Ipopt::Maximum_WallTime_Exceeded:
-      return IpoptStatus::kTimeLimit;
-#endif
-    case Ipopt::Not_Enough_Degrees_Of_Freedom:
-      return IpoptStatus::kTooFewVariables;
-    case Ipopt::Invalid_Number_Detected:
-      return IpoptStatus::kEvaluationFailed;
-    case Ipopt::Insufficient_Memory:
-      return IpoptStatus::kOutOfMemory;
-    default:
-      return IpoptStatus::kInternalError;
-  }
-}
-
 /// A reference-counted object, as Ipopt requires.
 template <typename T, typename... Args>
 Ipopt::SmartPtr<T> make_counted(Args&&... args) {
@@ -336,6 +324,10 @@ IpoptResult run_ipopt(Nlp& nlp, const IpoptOptions& options, std::ostream* journ
   if (!(options.constraint_tolerance > 0.0)) {
     throw InvalidInput(concat("ipopt: constraint_tolerance is ", options.constraint_tolerance,
                               "; expected a positive number"));
+  }
+  if (!(options.checkpoint_every >= 0.0)) {
+    throw InvalidInput(concat("ipopt: checkpoint_every is ", options.checkpoint_every,
+                              "; expected a number of seconds, at least 0"));
   }
   const ExclusiveRun run;
   std::unique_lock<std::mutex> mumps(mumps_mutex());
@@ -363,7 +355,7 @@ IpoptResult run_ipopt(Nlp& nlp, const IpoptOptions& options, std::ostream* journ
     std::rethrow_exception(adapter->exception());
   }
   const Unlocked callback(mumps);
-  return adapter->take_result(translate(status), nlp);
+  return adapter->result(status_of(status));
 }
 
 IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {

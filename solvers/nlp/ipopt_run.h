@@ -16,6 +16,11 @@ namespace hbar::solvers {
 ///   its range, or reserved for IpoptOptions
 void set_ipopt_options(Ipopt::IpoptApplication& application, const IpoptOptions& options);
 
+/// How an optimisation ended, by what Ipopt returned.
+///
+/// @param returned  an Ipopt::ApplicationReturnStatus
+[[nodiscard]] IpoptStatus status_of(int returned);
+
 /// Like solve_with_ipopt, with Ipopt's warnings and summaries written to a stream.
 ///
 /// @param journal  may be null

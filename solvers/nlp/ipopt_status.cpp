@@ -1,6 +1,7 @@
+#include <IpIpoptApplication.hpp>
 #include <string_view>
 
-#include "hbar/solvers/nlp/ipopt.h"
+#include "hbar/solvers/nlp/ipopt_run.h"
 
 namespace hbar::solvers {
 
@@ -78,6 +79,47 @@ std::string_view advice(IpoptStatus status) {
       return "look at Ipopt's own output with print_level = 5";
   }
   return "";
+}
+
+// Ipopt's numbers changed between versions, its names did not.
+IpoptStatus status_of(int returned) {
+  switch (returned) {
+    case Ipopt::Solve_Succeeded:
+      return IpoptStatus::kOptimal;
+    case Ipopt::Solved_To_Acceptable_Level:
+      return IpoptStatus::kAcceptable;
+    case Ipopt::Infeasible_Problem_Detected:
+      return IpoptStatus::kInfeasible;
+    case Ipopt::Search_Direction_Becomes_Too_Small:
+      return IpoptStatus::kStepTooSmall;
+    case Ipopt::Diverging_Iterates:
+      return IpoptStatus::kDiverging;
+    case Ipopt::User_Requested_Stop:
+      return IpoptStatus::kStopped;
+    case Ipopt::Feasible_Point_Found:
+      return IpoptStatus::kFeasible;
+    case Ipopt::Maximum_Iterations_Exceeded:
+      return IpoptStatus::kIterationLimit;
+    case Ipopt::Restoration_Failed:
+      return IpoptStatus::kRestorationFailed;
+    case Ipopt::Error_In_Step_Computation:
+      return IpoptStatus::kStepFailed;
+    case Ipopt::Maximum_CpuTime_Exceeded:
+      return IpoptStatus::kTimeLimit;
+#if defined(IPOPT_VERSION_MINOR) && \
+    (IPOPT_VERSION_MAJOR > 3 || (IPOPT_VERSION_MAJOR == 3 && IPOPT_VERSION_MINOR >= 14))
+    case Ipopt::Maximum_WallTime_Exceeded:
+      return IpoptStatus::kTimeLimit;
+#endif
+    case Ipopt::Not_Enough_Degrees_Of_Freedom:
+      return IpoptStatus::kTooFewVariables;
+    case Ipopt::Invalid_Number_Detected:
+      return IpoptStatus::kEvaluationFailed;
+    case Ipopt::Insufficient_Memory:
+      return IpoptStatus::kOutOfMemory;
+    default:
+      return IpoptStatus::kInternalError;
+  }
 }
 
 }  // namespace hbar::solvers

@@ -122,5 +122,9 @@ TEST_F(CorpusCommand, MistakesAreNamed) {
   }
 }
 
+TEST_F(CorpusCommand, NeedsNoLargeStack) {
+  EXPECT_EQ(with_small_stack("corpus " + path("matrices")), 0) << read_file(path("err"));
+}
+
 }  // namespace
 }  // namespace hbar::tool

@@ -67,6 +67,51 @@ TEST_F(Failures, AFailedWriteLeavesTheOldFileAndNoTemporaryOne) {
   EXPECT_EQ(files, 1);
 }
 
+TEST_F(Failures, AFileThatGrowsTooLargeIsNoCrash) {
+  const std::string command = "cd " + folder_.string() + "; ulimit -f 1; exec " + HBAR_TOOL +
+                              " simulate " + scene("pendulum") + " --out result.json 2>err";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 6);
+  EXPECT_EQ(read_file(path("err")), "hbar: result.json: cannot be written: File too large\n");
+}
+
+TEST_F(Failures, WhatCannotBeWrittenInTheEndIsSavedElsewhere) {
+  std::filesystem::create_directory(path("out"));
+  std::filesystem::create_directory(path("here"));
+  Program program(folder_,
+                  {"/bin/sh", "-c",
+                   "cd " + path("here") + "; exec " + HBAR_TOOL + " simulate " + scene("pendulum") +
+                       " --steps 5000000 --out ../out/r.json --csv " + path("out/q.csv")});
+  program.interrupt(0);
+  std::filesystem::remove_all(path("out"));
+  program.kill(SIGTERM);
+  EXPECT_EQ(program.wait(), 130);
+  EXPECT_NE(program.err().find("hbar: ../out/r.json: cannot be written: No such file or directory; "
+                               "saved as ./r.json.rescued instead\n"),
+            std::string::npos)
+      << program.err();
+  EXPECT_EQ(result("here/r.json.rescued").at("status"), "interrupted");
+  EXPECT_FALSE(read_file(path("here/q.csv.rescued")).empty());
+}
+
+TEST_F(Failures, OneFileForTwoResultsIsRefusedWhateverItIsCalled) {
+  std::filesystem::create_symlink(folder_, folder_ / "link");
+  for (const std::string& other : {std::string("./x"), std::string("link/x"), path("x")}) {
+    const std::string command = "cd " + folder_.string() + "; exec " + HBAR_TOOL + " simulate " +
+                                scene("pendulum") + " --out x --csv " + other + " 2>err";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2) << other;
+    EXPECT_EQ(read_file(path("err")), "hbar: --out and --csv name the same file\n");
+  }
+}
+
+TEST_F(Failures, ASmallStackIsEnough) {
+  for (const std::string& command :
+       {std::string("--help"), "info " + scene("walker"), "simulate " + scene("walker"),
+        "gradient " + scene("walker") + " --params all --steps 5",
+        "check " + scene("double_pendulum") + " --q0 '0.5 -0.2' --params all --steps 5"}) {
+    EXPECT_EQ(with_small_stack(command), 0) << command << read_file(path("err"));
+  }
+}
+
 TEST_F(Failures, AReaderThatHasGoneIsNoCrash) {
   const std::string command = std::string("exec 2>") + path("err") + "; { " + HBAR_TOOL + " info " +
                               scene("arm") + "; echo $? > " + path("code") + "; } | true";
@@ -80,30 +125,33 @@ TEST_F(Failures, AReaderThatHasGoneIsNoCrash) {
   EXPECT_EQ(read_file(path("err")).find("hbar: standard output: cannot be written"), 0U);
 }
 
-TEST_F(Failures, AnInterruptKeepsWhatWasReached) {
-  Program program(folder_, words({"simulate", scene("pendulum"), "--steps", "5000000", "--q0", "1",
-                                  "--out", path("result.json"), "--csv", path("q.csv")}));
-  program.interrupt();
-  EXPECT_EQ(program.wait(), 130);
-  EXPECT_EQ(program.err().find("hbar: simulation interrupted after "), 0U) << program.err();
-  const nlohmann::json r = result("result.json");
-  EXPECT_EQ(r.at("status"), "interrupted");
-  const std::size_t done = r.at("steps_done");
-  EXPECT_LT(done, 5000000U);
-  EXPECT_EQ(r.at("q").size(), done + 1);
-  EXPECT_EQ(r.at("newton_iterations").size(), done);
-  EXPECT_FALSE(r.contains("objective"));
-  EXPECT_EQ(r.at("steps"), 5000000);
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "q.csv"));
+TEST_F(Failures, ASignalToEndKeepsWhatWasReached) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    Program program(folder_, words({"simulate", scene("pendulum"), "--steps", "5000000", "--q0",
+                                    "1", "--out", path("result.json"), "--csv", path("q.csv")}));
+    program.interrupt(signal);
+    EXPECT_EQ(program.wait(), 130);
+    EXPECT_EQ(program.err().find("hbar: simulation interrupted after "), 0U) << program.err();
+    const nlohmann::json r = result("result.json");
+    EXPECT_EQ(r.at("status"), "interrupted");
+    const std::size_t done = r.at("steps_done");
+    EXPECT_LT(done, 5000000U);
+    EXPECT_EQ(r.at("q").size(), done + 1);
+    EXPECT_EQ(r.at("newton_iterations").size(), done);
+    EXPECT_FALSE(r.contains("objective"));
+    EXPECT_EQ(r.at("steps"), 5000000);
+    EXPECT_TRUE(std::filesystem::remove(folder_ / "q.csv"));
+  }
 }
 
-TEST_F(Failures, TheSecondInterruptEndsAtOnce) {
+TEST_F(Failures, ASignalBeforeThereIsAnythingToSaveEndsAtOnce) {
   ASSERT_EQ(::mkfifo(path("fifo").c_str(), 0600), 0);  // reading it waits for ever
-  Program program(folder_, words({"simulate", scene("arm"), "--controls", path("fifo")}));
-  program.interrupt();
-  program.interrupt();
-  EXPECT_EQ(program.wait(), 130);
-  EXPECT_EQ(program.err(), "");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    Program program(folder_, words({"simulate", scene("arm"), "--controls", path("fifo")}));
+    program.interrupt_early(signal);
+    EXPECT_EQ(program.wait(), 130);
+    EXPECT_EQ(program.err(), "");
+  }
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)

@@ -56,21 +56,21 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
-  /// Waits until the program handles SIGINT itself, then sends it.
-  void interrupt() const {
-    const std::string file = "/proc/" + std::to_string(process_) + "/status";
-    for (int tries = 0; tries < 6000; ++tries) {
-      const std::string status = read_file(file);
-      const std::size_t place = status.find("SigCgt:");
-      if (place != std::string::npos &&
-          (std::stoull(status.substr(place + 7), nullptr, 16) >> (SIGINT - 1)) % 2 == 1) {
-        break;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    ::kill(process_, SIGINT);
+  /// Waits until the program has something to save, then sends a signal. The command and the
+  /// examples catch SIGHUP from then on.
+  void interrupt(int signal = SIGINT) const {
+    wait_until_caught(SIGHUP);
+    ::kill(process_, signal);
   }
+
+  /// Waits until the program catches SIGINT, which it does from the beginning, then sends a signal.
+  void interrupt_early(int signal = SIGINT) const {
+    wait_until_caught(SIGINT);
+    ::kill(process_, signal);
+  }
+
+  /// Sends a signal, whatever the program does.
+  void kill(int signal) const { ::kill(process_, signal); }
 
   /// Waits for its end. Exit status, or 1000 + the signal that ended it.
   int wait() {
@@ -83,6 +83,20 @@ class Program {
   [[nodiscard]] std::string err() const { return read_file(err_); }
 
  private:
+  void wait_until_caught(int signal) const {
+    const std::string file = "/proc/" + std::to_string(process_) + "/status";
+    for (int tries = 0; tries < 6000; ++tries) {
+      const std::string status = read_file(file);
+      const std::size_t place = status.find("SigCgt:");
+      if (place != std::string::npos &&
+          (std::stoull(status.substr(place + 7), nullptr, 16) >> (signal - 1)) % 2 == 1) {
+        break;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+
   static void redirect(const std::string& file, int descriptor) {
     const int opened = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
     ::dup2(opened, descriptor);
@@ -121,6 +135,13 @@ class ToolTest : public ::testing::Test {
     Program program(folder_, words(arguments), out);
     const int code = program.wait();
     return {code, out.empty() ? program.out() : "", program.err()};
+  }
+
+  /// The exit code of the command with a stack of 64 KiB; its errors go to the file err.
+  [[nodiscard]] int with_small_stack(const std::string& arguments) const {
+    const std::string line = std::string("ulimit -s 64; exec ") + HBAR_TOOL + ' ' + arguments +
+                             " >/dev/null 2>" + path("err");
+    return WEXITSTATUS(std::system(line.c_str()));
   }
 
   /// A file in the test's folder.

@@ -218,5 +218,9 @@ TEST_F(SolversCommand, ABadSceneOrEmptyFolderExitsWithThree) {
   EXPECT_EQ(empty.err, "hbar: " + path("empty") + ": there is no Matrix Market file (NAME.mtx)\n");
 }
 
+TEST_F(SolversCommand, NeedsNoLargeStack) {
+  EXPECT_EQ(with_small_stack("solvers --dof 3 --steps 5"), 0) << read_file(path("err"));
+}
+
 }  // namespace
 }  // namespace hbar::tool

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
 #include "hbar/core/base/error.h"
@@ -19,6 +20,8 @@
 
 namespace hbar::study {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Random numbers of its own, and an objective that is least at 3.
 JobResult draw_job(int index, std::mt19937_64& random) {
@@ -237,6 +240,41 @@ TEST_F(ManyStarts, RefuseOptionsWithoutSense) {
   EXPECT_EQ(refusal({.name = "two\nlines"}),
             "run_jobs: the study's name \"two\\x0alines\" must be one line of at most 60 "
             "characters");
+}
+
+TEST_F(ManyStarts, ATableThatCannotBeWrittenStopsNoJobAndIsSavedElsewhere) {
+  fs::create_directory(folder_ / "out");
+  JobOptions options = draw_study(folder_ / "out/table", 2);
+  int done = 0;
+  options.on_job = [&](int, const JobResult&) {
+    if (++done == 1) {
+      fs::remove_all(folder_ / "out");
+    }
+  };
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_.path());
+  const std::string message = testing::message_of<IoError>([&] { run_jobs(options, draw_job); });
+  fs::current_path(before);
+  EXPECT_EQ(message, (folder_ / "out/table").string() +
+                         ": cannot be written: No such file or directory; saved as "
+                         "./table.rescued instead");
+  EXPECT_EQ(done, options.count);
+  options.table = folder_ / "table.rescued";
+  options.on_job = {};
+  EXPECT_EQ(run_jobs(options, draw_job).ran, 0);
+}
+
+TEST_F(ManyStarts, ASignalToAJobIsNoResult) {
+  JobOptions options = draw_study(folder_ / "table", 1);
+  const JobReport report = run_jobs(options, [](int index, std::mt19937_64& random) {
+    ::raise(SIGINT);  // as from a terminal, to the whole group of processes
+    ::raise(SIGTERM);
+    return draw_job(index, random);
+  });
+  for (const std::optional<JobResult>& result : report.results) {
+    ASSERT_TRUE(result.has_value());
+    EXPECT_FALSE(result->failed) << result->message;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <filesystem>
+#include <vector>
+
 #include "hbar/core/files/atomic_file.h"
 #include "hbar/core/files/text_file.h"
 #include "tests/support/message_of.h"
@@ -60,7 +64,7 @@ TEST_F(SolutionFile, IsReadToTheLastBit) {
 TEST_F(SolutionFile, IsATextThatCanBeRead) {
   save_solution(folder_ / "s", odd_solution());
   EXPECT_EQ(scene::read_text_file(folder_ / "s"),
-            "hbar-solution,1\n"
+            "hbar-solution,2\n"
             "status,iteration limit\n"
             "objective,0.30000000000000004\n"
             "mu,1e-09\n"
@@ -70,36 +74,51 @@ TEST_F(SolutionFile, IsATextThatCanBeRead) {
             "variable,\"length, m\",0.3333333333333333,1e+300,0\n"
             "variable,\"u[3] \"\"grip\"\"\",-5e-324,0,2.5\n"
             "# constraint, name, multiplier\n"
-            "constraint,reach,-0.1\n");
+            "constraint,reach,-0.1\n"
+            "end,2,1\n");
 }
 
 TEST_F(SolutionFile, OfAnotherProgramIsRefusedWithWhatDiffers) {
-  const std::string head = "hbar-solution,1\n";
+  const std::string head = "hbar-solution,2\n";
   const std::string x012 = "variable,x0,1,0,0\nvariable,x1,1,0,0\nvariable,x2,1,0,0\n";
   const std::string x3 = "variable,x3,1,0,0\n";
   const std::string c = "constraint,product,1\nconstraint,sphere,1\n";
-  EXPECT_EQ(refusal(head + x012 + x3 + c), "");
-  EXPECT_EQ(refusal(head + x012 + "variable,y3,1,0,0\n" + c),
+  const std::string end = "end,4,2\n";
+  EXPECT_EQ(refusal(head + x012 + x3 + c + end), "");
+  EXPECT_EQ(refusal(head + x012 + "variable,y3,1,0,0\n" + c + end),
             ":5:10: another program's solution: variable 3 is \"y3\", not \"x3\"");
-  EXPECT_EQ(refusal(head + x012 + c),
-            ":6:19: another program's solution: it has 3 variables, the program 4");
-  EXPECT_EQ(refusal(head + x012 + x3 + "variable,x4,1,0,0\n" + c),
+  EXPECT_EQ(refusal(head + x012 + c + "end,3,2\n"),
+            ":7:7: another program's solution: it has 3 variables, the program 4");
+  EXPECT_EQ(refusal(head + x012 + x3 + "variable,x4,1,0,0\n" + c + "end,5,2\n"),
             ":6:10: another program's solution: it has 5 variables, the program 4");
-  EXPECT_EQ(refusal(head + x012 + x3 + "constraint,sphere,1\nconstraint,product,1\n"),
+  EXPECT_EQ(refusal(head + x012 + x3 + "constraint,sphere,1\nconstraint,product,1\n" + end),
             ":6:12: another program's solution: constraint 0 is \"sphere\", not \"product\"");
 }
 
 TEST_F(SolutionFile, ThatIsNoneIsRefusedWithThePlace) {
-  EXPECT_EQ(refusal(""), ":1: this is no solution, which begins with \"hbar-solution,1\"");
+  EXPECT_EQ(refusal(""), ":1: this is no solution, which begins with \"hbar-solution,2\"");
   EXPECT_EQ(refusal("<redmax/>\n"),
-            ":1: this is no solution, which begins with \"hbar-solution,1\"");
-  EXPECT_EQ(refusal("hbar-solution,2\n"), ":1:15: version 2 of the format; known is 1");
-  EXPECT_EQ(refusal("hbar-solution,1\nvariable,x0,inf,0,0\n"),
+            ":1: this is no solution, which begins with \"hbar-solution,2\"");
+  EXPECT_EQ(refusal("hbar-solution,1\n"), ":1:15: version 1 of the format; known is 2");
+  EXPECT_EQ(refusal("hbar-solution,2\nvariable,x0,inf,0,0\n"),
             ":2:13: \"inf\" is not a finite number");
-  EXPECT_EQ(refusal("hbar-solution,1\nvariable,x0,1\n"),
+  EXPECT_EQ(refusal("hbar-solution,2\nvariable,x0,1\n"),
             ":2:13: \"variable\" has 2 entries; it takes 4");
-  EXPECT_EQ(refusal("hbar-solution,1\nangle,x0,1\n"),
+  EXPECT_EQ(refusal("hbar-solution,2\nangle,x0,1\n"),
             ":2:1: \"angle\" is nothing that a solution has");
+}
+
+TEST_F(SolutionFile, IsRefusedWhereverItWasCut) {
+  Hs071 program;
+  static_cast<void>(solve_and_save(program, {}, folder_ / "s"));
+  const std::string whole = scene::read_text_file(folder_ / "s");
+  EXPECT_EQ(refusal(whole), "");
+  for (std::size_t length = 0; length + 1 < whole.size(); ++length) {
+    EXPECT_NE(refusal(whole.substr(0, length)), "") << length << " of " << whole.size() << " bytes";
+  }
+  EXPECT_EQ(refusal("hbar-solution,2\nvariable,x0,1,0,0\nconstraint,c,0.13\n"),
+            ":3:14: this solution is not whole: after 1 variables and 1 constraints there is no "
+            "line \"end\" that counts them");
 }
 
 TEST_F(SolutionFile, TakesOnlyFiniteNumbersOfTheRightCount) {
@@ -136,6 +155,68 @@ TEST_F(SolutionFile, IsWrittenWhenIpoptIsInterrupted) {
   EXPECT_EQ(result.status, solvers::IpoptStatus::kInterrupted);
   EXPECT_EQ(read_solution(folder_ / "s").status, to_string(result.status));
   EXPECT_EQ(load_solution(folder_ / "s", program).x, result.x);
+}
+
+/// Hs071 that looks at the file at each evaluation of its objective.
+struct Watched final : Hs071 {
+  explicit Watched(std::filesystem::path path) : file(std::move(path)) {}
+  double objective(const Eigen::VectorXd& x) override {
+    if (std::filesystem::exists(file)) {
+      const Solution saved = read_solution(file);  // refuses what is not whole
+      found.push_back(saved.objective);
+      EXPECT_EQ(load_solution(file, *this).x, saved.point.x);
+      multipliers = saved.point.constraint_multipliers;
+      EXPECT_EQ(saved.status, "interrupted");
+    }
+    return Hs071::objective(x);
+  }
+  std::filesystem::path file;
+  std::vector<double> found;
+  Eigen::VectorXd multipliers;
+};
+
+TEST_F(SolutionFile, HoldsTheBestSoFarAllTheWhile) {
+  Watched program(folder_ / "s");
+  solvers::IpoptOptions options;
+  options.checkpoint_every = 0.0;
+  const solvers::IpoptResult result = solve_and_save(program, options, folder_ / "s");
+  ASSERT_TRUE(result.converged());
+  ASSERT_GE(program.found.size(), 5U);
+  // What is in the file before the last evaluation is the last but one, with multipliers that fit.
+  EXPECT_NEAR(program.found.back(), result.objective, 1e-4);
+  EXPECT_LT((program.multipliers - result.constraint_multipliers).norm(), 1e-3);
+  EXPECT_GT(result.constraint_multipliers.norm(), 0.1);
+  EXPECT_EQ(folder_.count(), 1);
+}
+
+TEST_F(SolutionFile, IsRefusedBeforeTheWorkWhereItCannotBeWritten) {
+  Hs071 program;
+  int calls = 0;
+  solvers::IpoptOptions options;
+  options.on_iteration = [&calls](const solvers::IterationInfo&) { return ++calls > 0; };
+  EXPECT_EQ(testing::message_of<IoError>(
+                [&] { (void)solve_and_save(program, options, "/no/such/folder/s"); }),
+            "/no/such/folder/s: cannot be written: there is no folder /no/such/folder");
+  EXPECT_EQ(calls, 0);
+}
+
+TEST_F(SolutionFile, ThatCannotBeWrittenInTheEndIsSavedElsewhere) {
+  std::filesystem::create_directory(folder_ / "out");
+  Hs071 program;
+  solvers::IpoptOptions options;
+  options.on_iteration = [this](const solvers::IterationInfo&) {
+    std::filesystem::remove_all(folder_ / "out");
+    return true;
+  };
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  const std::string message = testing::message_of<IoError>(
+      [&] { (void)solve_and_save(program, options, folder_ / "out/s"); });
+  std::filesystem::current_path(before);
+  EXPECT_EQ(message, (folder_ / "out/s").string() +
+                         ": cannot be written: No such file or directory; saved as ./s.rescued "
+                         "instead");
+  EXPECT_EQ(read_solution(folder_ / "s.rescued").status, "optimal");
 }
 
 }  // namespace

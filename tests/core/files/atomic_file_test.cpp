@@ -1,12 +1,17 @@
 #include "hbar/core/files/atomic_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <thread>
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/text_file.h"
@@ -81,6 +86,39 @@ TEST(AtomicFile, AFailedWriteLeavesTheOldFileAlone) {
   std::signal(SIGXFSZ, old_handler);
   EXPECT_EQ(message, (folder / "a").string() + ": cannot be written: File too large");
   EXPECT_EQ(read_text_file(folder / "a"), "old");
+  EXPECT_EQ(folder.count(), 1);
+}
+
+TEST(AtomicFile, AFileThatIsBeingWrittenIsNotAbandoned) {
+  const TemporaryFolder folder;
+  std::string name = (folder / ".hbar-tmp-XXXXXX").string();
+  const int written = ::mkstemp(name.data());
+  ASSERT_GE(written, 0);
+  ASSERT_EQ(::flock(written, LOCK_EX), 0);
+  remove_abandoned_files(folder.path());
+  EXPECT_TRUE(fs::exists(name));
+  ::close(written);  // as when its process was killed
+  remove_abandoned_files(folder.path());
+  EXPECT_EQ(folder.count(), 0);
+}
+
+TEST(AtomicFile, WritersAndCleanersDoNotDisturbEachOther) {
+  const TemporaryFolder folder;
+  std::atomic<bool> done = false;
+  std::thread cleaner([&] {
+    while (!done) {
+      remove_abandoned_files(folder.path());
+    }
+  });
+  int right = 0;
+  for (int i = 0; i < 300; ++i) {
+    const std::string text = std::to_string(i);
+    right += write_refusal(folder / "a", text) == "was written" ? 1 : 0;
+    right += read_text_file(folder / "a") == text ? 1 : 0;
+  }
+  done = true;
+  cleaner.join();
+  EXPECT_EQ(right, 600);
   EXPECT_EQ(folder.count(), 1);
 }
 
