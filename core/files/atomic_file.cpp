@@ -1,5 +1,6 @@
 #include "hbar/core/files/atomic_file.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -7,6 +8,7 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -113,19 +115,23 @@ OpenFile open_temporary(const std::filesystem::path& real, const std::filesystem
 }  // namespace
 
 void remove_abandoned_files(const std::filesystem::path& folder) {
-  std::error_code code;
-  for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, code), end;
-       !code && entry != end; entry.increment(code)) {
-    if (!entry->path().filename().string().starts_with(kTemporary)) {
+  const std::unique_ptr<DIR, int (*)(DIR*)> entries(
+      ::opendir(folder.empty() ? "." : folder.c_str()), ::closedir);
+  if (entries == nullptr) {
+    return;
+  }
+  const int place = ::dirfd(entries.get());
+  while (const dirent* entry = ::readdir(entries.get())) {
+    if (!std::string_view(entry->d_name).starts_with(kTemporary)) {
       continue;
     }
-    const int descriptor = ::open(entry->path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+    const int descriptor = ::openat(place, entry->d_name, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
     if (descriptor < 0) {
       continue;
     }
     const OpenFile file(descriptor, "");
     if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
-      ::unlink(entry->path().c_str());
+      ::unlinkat(place, entry->d_name, 0);
     }
   }
 }

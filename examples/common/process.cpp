@@ -17,11 +17,12 @@
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/result_file.h"
+#include "hbar/solvers/linear/linear_solver.h"
 
 namespace hbar::example {
 namespace {
 
-const char* name_of_program = "";
+const char* name_of_program = nullptr;
 std::atomic<bool> stop = false;
 std::atomic<int> gentle = 0;  // how many StopsGently there are
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
@@ -45,19 +46,28 @@ struct sigaction handle(int signal, void (*handler)(int)) {
   return before;
 }
 
-/// A destructor that runs out of memory cannot throw (nlohmann-json has such): this is its end.
+constexpr const char* kNoMemory = "out of memory; take fewer steps or parameters";
+std::atomic<bool> memory_failed = false;
+
+/// As operator new does without a handler, but remembered.
+void note_failed_memory() {
+  memory_failed = true;
+  throw std::bad_alloc();
+}
+
+/// What must not throw and runs out of memory (destructors of nlohmann-json, for one) ends here.
 [[noreturn]] void end_without_memory() {
-  if (const std::exception_ptr error = std::current_exception()) {
-    try {
-      std::rethrow_exception(error);
-    } catch (const std::bad_alloc&) {
-      write_message("out of memory; take fewer steps or parameters");
-      ::_exit(static_cast<int>(ExitCode::kOutOfMemory));
-    } catch (...) {
-      std::abort();
-    }
+  if (memory_failed) {
+    write_message(kNoMemory);
+    ::_exit(static_cast<int>(ExitCode::kOutOfMemory));
   }
   std::abort();
+}
+
+// Objects that are made before main allocate, too: the libraries' as well as hbar's.
+[[gnu::constructor(101)]] void end_well_without_memory() {
+  std::set_new_handler(note_failed_memory);
+  std::set_terminate(end_without_memory);
 }
 
 /// 0, or the system's error code.
@@ -92,10 +102,12 @@ ExitCode outcome_of(const std::function<ExitCode()>& run) noexcept {
     return say(error, ExitCode::kInputOutput);
   } catch (const InvalidInput& error) {
     return say(error, ExitCode::kBadScene);
+  } catch (const solvers::OutOfMemory& error) {
+    return say(error, ExitCode::kOutOfMemory);
   } catch (const NumericalFailure& error) {
     return say(error, stop ? ExitCode::kInterrupted : ExitCode::kSimulationFailed);
   } catch (const std::bad_alloc&) {
-    write_message("out of memory; take fewer steps or parameters");
+    write_message(kNoMemory);
     return ExitCode::kOutOfMemory;
   } catch (const std::exception& error) {
     return say(error, stop ? ExitCode::kInterrupted : ExitCode::kSimulationFailed);
@@ -167,7 +179,6 @@ void prepare_process(const char* program) {
   handle(SIGXFSZ, SIG_IGN);
   handle(SIGINT, handle_stop);
   handle(SIGTERM, handle_stop);
-  std::set_terminate(end_without_memory);
 }
 
 StopsGently::StopsGently() {
@@ -190,8 +201,10 @@ void print(std::string_view text) noexcept {
 }
 
 void write_message(std::string_view text) noexcept {
-  write_all(STDERR_FILENO, name_of_program);
-  write_all(STDERR_FILENO, ": ");
+  if (name_of_program != nullptr) {
+    write_all(STDERR_FILENO, name_of_program);
+    write_all(STDERR_FILENO, ": ");
+  }
   write_all(STDERR_FILENO, text);
   write_all(STDERR_FILENO, "\n");
 }

@@ -110,7 +110,11 @@ void write_corpus_matrix(const BenchmarkMatrix& given, const fs::path& folder) {
   BenchmarkMatrix matrix = given;
   const Reference reference = find_reference(matrix);
   if (!reference.failure.empty()) {
-    throw NumericalFailure(concat(matrix.label.name, ": ", reference.failure));
+    const std::string message = concat(matrix.label.name, ": ", reference.failure);
+    if (reference.out_of_memory) {
+      throw solvers::OutOfMemory(message);
+    }
+    throw NumericalFailure(message);
   }
   matrix.condition = reference.condition;
   const std::string& name = matrix.label.name;

@@ -147,6 +147,7 @@ Reference find_reference(const BenchmarkMatrix& matrix) {
     out.failure = error.what();
   } catch (const std::bad_alloc& error) {
     out.failure = error.what();
+    out.out_of_memory = true;
   }
   return out;
 }

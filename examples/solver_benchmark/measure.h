@@ -27,6 +27,7 @@ struct Reference {
   Eigen::VectorXd x;                ///< refined beyond working precision; empty if there is none
   std::optional<double> condition;  ///< estimate of ‖A‖₁ ‖A⁻¹‖₁
   std::string failure;              ///< why there is no x; else empty
+  bool out_of_memory = false;       ///< whether that is why
 };
 
 /// One solver on one matrix. Times are in seconds of MeasureOptions::clock.
