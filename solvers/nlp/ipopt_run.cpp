@@ -355,7 +355,11 @@ IpoptResult run_ipopt(Nlp& nlp, const IpoptOptions& options, std::ostream* journ
     std::rethrow_exception(adapter->exception());
   }
   const Unlocked callback(mumps);
-  return adapter->result(status_of(status));
+  IpoptResult result = adapter->result(status_of(status));
+  if (adapter->exception() != nullptr) {  // the final point is evaluated once more
+    std::rethrow_exception(adapter->exception());
+  }
+  return result;
 }
 
 IpoptResult solve_with_ipopt(Nlp& nlp, const IpoptOptions& options) {

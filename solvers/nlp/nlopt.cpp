@@ -333,6 +333,9 @@ NloptResult NloptRun::run(Nlp& nlp) {
     std::rethrow_exception(exception_);
   }
   take_best(nlp);
+  if (program_.evaluator().exception() != nullptr) {  // the multipliers ask for derivatives
+    std::rethrow_exception(program_.evaluator().exception());
+  }
   result_.status = translate(code);
   describe();
   return result_;
