@@ -11,7 +11,8 @@ build="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev coinor-
        nlohmann-json3-dev libfmt-dev"
 test="python3 git libgtest-dev"
 # Left out with a message where the distribution has none: one of each line is enough.
-optional="libmujoco-dev:the_comparison_with_MuJoCo
+optional="libassimp-dev:DAE,_PLY_and_glTF_meshes
+          libmujoco-dev:the_comparison_with_MuJoCo
           clang-format-14|clang-format:the_format_check
           gnuplot-nox|gnuplot:the_figures_of_hbar_solvers"
 

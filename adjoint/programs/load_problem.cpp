@@ -130,7 +130,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& path,
 
 LoadedProblem load_problem(const std::filesystem::path& path, const LoadOptions& options) {
   scene::Scene scene = scene::read_scene(path);
-  Model model = scene::build_model(scene);
+  Model model = scene::build_model(scene, &scene.notices);
   if (model.dof() == 0) {
     throw InvalidInput(concat(scene.file, ": no joint has a coordinate: there is nothing to move"));
   }

@@ -91,7 +91,7 @@ void check_edges(const TriangleMesh& mesh) {
       const auto low = static_cast<std::size_t>(std::min(triangle[i], triangle[(i + 1) % 3]));
       const auto high = static_cast<std::size_t>(std::max(triangle[i], triangle[(i + 1) % 3]));
       const EdgeUse& use = edges.at(low * mesh.vertices.size() + high);
-      if (use.forward == 1 && use.backward == 1) {
+      if (use.forward == use.backward) {
         continue;
       }
       const int total = use.forward + use.backward;
@@ -101,8 +101,8 @@ void check_edges(const TriangleMesh& mesh) {
         throw InvalidInput(edge + " has one triangle; a closed surface has two at each edge");
       }
       if (total > 2) {
-        throw InvalidInput(
-            concat(edge, " has ", total, " triangles; a closed surface has two at each edge"));
+        throw InvalidInput(concat(edge, " has ", total, " triangles, ", use.forward,
+                                  " of one orientation; a closed surface has as many of each"));
       }
       throw InvalidInput(edge +
                          " has two triangles of opposite orientation; all corners must run "
@@ -143,7 +143,7 @@ TetrahedronSums sum_tetrahedra(const TriangleMesh& mesh) {
 
 bool is_closed(const TriangleMesh& mesh) {
   for (const auto& [key, use] : count_edges(mesh)) {
-    if (use.forward + use.backward != 2) {
+    if (use.forward != use.backward) {
       return false;
     }
   }

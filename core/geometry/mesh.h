@@ -15,14 +15,15 @@ struct TriangleMesh {
 /// Refuses a surface that does not bound a solid.
 ///
 /// @throws InvalidInput that says where, for: no triangle; a vertex that is not finite; an index
-///         out of range; a triangle without area; an edge with one triangle (a hole) or more than
-///         two; two neighbours of opposite orientation; a surface turned inside out
+///         out of range; a triangle without area; an edge with one triangle (a hole), or more of
+///         one orientation than of the other; a surface turned inside out. A surface may touch
+///         itself: four triangles and more at an edge are fine
 void check_solid(const TriangleMesh& mesh);
 
 /// The same surface with vertices of equal coordinates merged.
 [[nodiscard]] TriangleMesh merge_equal_vertices(const TriangleMesh& mesh);
 
-/// Whether every edge belongs to exactly two triangles.
+/// Whether every edge has as many triangles of one orientation as of the other.
 [[nodiscard]] bool is_closed(const TriangleMesh& mesh);
 
 /// Moments of a homogeneous solid of density 1.

@@ -4,9 +4,13 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
+#include <numbers>
 #include <numeric>
 #include <unordered_map>
 #include <utility>
+
+#include "hbar/core/geometry/mesh_overlap.h"
 
 namespace hbar {
 namespace {
@@ -19,7 +23,7 @@ constexpr std::size_t kWaiting = 64;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
-/// The mesh itself if it is closed or cannot be repaired, else with equal vertices merged.
+/// The mesh with equal vertices merged.
 TriangleMesh closed_mesh(const TriangleMesh& mesh) {
   const auto exists = [&](int i) { return i >= 0 && at(i) < mesh.vertices.size(); };
   const bool mendable =
@@ -28,8 +32,9 @@ TriangleMesh closed_mesh(const TriangleMesh& mesh) {
       std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& triangle) {
         return std::all_of(triangle.begin(), triangle.end(), exists);
       });
-  TriangleMesh closed = mendable && !is_closed(mesh) ? merge_equal_vertices(mesh) : mesh;
+  TriangleMesh closed = mendable ? merge_equal_vertices(mesh) : mesh;
   check_solid(closed);
+  check_overlap(closed);
   return closed;
 }
 
@@ -48,6 +53,7 @@ TriangleDistance::TriangleDistance(const TriangleMesh& mesh) {
     triangles_.push_back({{a, b, c}, (b - a).cross(c - a).normalized()});
   }
   set_pseudonormals(closed);
+  set_touching(closed);
 
   std::vector<int> order(triangles_.size());
   std::iota(order.begin(), order.end(), 0);
@@ -59,6 +65,9 @@ TriangleDistance::TriangleDistance(const TriangleMesh& mesh) {
   };
   triangles_ = sorted(triangles_);
   pseudonormals_ = sorted(pseudonormals_);
+  if (!touching_.empty()) {
+    touching_ = sorted(touching_);
+  }
 }
 
 void TriangleDistance::set_pseudonormals(const TriangleMesh& mesh) {
@@ -89,6 +98,74 @@ void TriangleDistance::set_pseudonormals(const TriangleMesh& mesh) {
       normals[kVertex + i] = at_vertex[at(indices[i])];
     }
   }
+}
+
+/// Marks edges of more than two triangles, and vertices where fans of triangles meet that no edge
+/// joins, or at the end of such an edge.
+void TriangleDistance::set_touching(const TriangleMesh& mesh) {
+  std::map<std::pair<int, int>, std::vector<std::size_t>> at_edge;  // corners, 3 t + i
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::array<int, 3>& c = mesh.triangles[t];
+      at_edge[std::minmax(c[i], c[(i + 1) % 3])].push_back(3 * t + i);
+    }
+  }
+  std::vector<std::size_t> fan(3 * mesh.triangles.size());  // a corner before it in the same fan
+  std::iota(fan.begin(), fan.end(), std::size_t{0});
+  const auto root = [&fan](std::size_t corner) {
+    while (fan[corner] != corner) {
+      fan[corner] = fan[fan[corner]];
+      corner = fan[corner];
+    }
+    return corner;
+  };
+  const auto next = [](std::size_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; };
+  std::vector<bool> vertex_touches(mesh.vertices.size(), false);
+  bool any = false;
+  for (const auto& [edge, corners] : at_edge) {
+    if (corners.size() > 2) {
+      any = vertex_touches[at(edge.first)] = vertex_touches[at(edge.second)] = true;
+      continue;
+    }
+    // One runs along the edge, the other against it: the end of one is the beginning of the other.
+    fan[root(corners[0])] = root(next(corners[1]));
+    fan[root(next(corners[0]))] = root(corners[1]);
+  }
+  std::vector<std::size_t> fan_of(mesh.vertices.size(), fan.size());
+  for (std::size_t corner = 0; corner < fan.size(); ++corner) {
+    const std::size_t vertex = at(mesh.triangles[corner / 3][corner % 3]);
+    if (fan_of[vertex] == fan.size()) {
+      fan_of[vertex] = root(corner);
+    }
+    if (fan_of[vertex] != root(corner)) {
+      any = vertex_touches[vertex] = true;
+    }
+  }
+  if (!any) {
+    return;
+  }
+  touching_.resize(mesh.triangles.size());
+  for (std::size_t corner = 0; corner < fan.size(); ++corner) {
+    const std::array<int, 3>& c = mesh.triangles[corner / 3];
+    const std::size_t i = corner % 3;
+    std::array<bool, kFeatures>& marks = touching_[corner / 3];
+    marks[kVertex + i] = vertex_touches[at(c[i])];
+    marks[kEdge + i] = at_edge.at(std::minmax(c[i], c[(i + 1) % 3])).size() > 2;
+  }
+}
+
+/// How often the surface goes around x: the sum of the solid angles of its triangles over 4 π (A.
+/// van Oosterom & J. Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983).
+double TriangleDistance::winding_number(const Eigen::Vector3d& x) const {
+  double sum = 0.0;
+  for (const Triangle& triangle : triangles_) {
+    const Eigen::Vector3d a = triangle.corners[0] - x;
+    const Eigen::Vector3d b = triangle.corners[1] - x;
+    const Eigen::Vector3d c = triangle.corners[2] - x;
+    sum += std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
+                                             b.dot(c) * a.norm() + c.dot(a) * b.norm());
+  }
+  return sum / (2.0 * std::numbers::pi);
 }
 
 /// Adds the triangles order[first] to order[last - 1], halved where their centres spread most, and
@@ -199,8 +276,11 @@ double TriangleDistance::signed_distance(const Eigen::Vector3d& x, int& hint) co
   improve(x, hint, nearest);
   search(x, nearest);
   hint = nearest.triangle;
-  const double side = pseudonormals_[at(hint)][at(nearest.feature)].dot(nearest.offset);
   const double distance = std::sqrt(nearest.squared);
+  if (!touching_.empty() && touching_[at(hint)][at(nearest.feature)]) {
+    return winding_number(x) > 0.5 ? -distance : distance;
+  }
+  const double side = pseudonormals_[at(hint)][at(nearest.feature)].dot(nearest.offset);
   return side < 0.0 ? -distance : distance;
 }
 

@@ -12,13 +12,13 @@ namespace hbar {
 /// Exact signed distance to the surface of a solid: negative inside, accurate to rounding
 /// everywhere. A tree of boxes finds the nearest triangle; the sign is that of the angle-weighted
 /// pseudonormal of the nearest face, edge or vertex (Bærentzen & Aanæs, IEEE TVCG 11(3), 2005),
-/// which is right on every closed surface that neither cuts nor touches itself. Immutable, and safe
-/// to share between threads.
+/// which is right wherever a closed surface does not touch itself; where it does, the winding
+/// number decides. Immutable, and safe to share between threads.
 class TriangleDistance {
  public:
-  /// @param mesh  a closed surface, length; if it is not closed, vertices of equal coordinates are
-  ///              merged first
-  /// @throws InvalidInput as check_solid does
+  /// @param mesh  a closed surface, length, which may touch itself; vertices of equal coordinates
+  ///              are one
+  /// @throws InvalidInput as check_solid and check_overlap do
   explicit TriangleDistance(const TriangleMesh& mesh);
 
   /// @param x  a point, length                                                       [3]
@@ -56,12 +56,15 @@ class TriangleDistance {
   };
 
   void set_pseudonormals(const TriangleMesh& mesh);
+  void set_touching(const TriangleMesh& mesh);
+  [[nodiscard]] double winding_number(const Eigen::Vector3d& x) const;
   int add_node(std::vector<int>& order, int first, int last);
   void improve(const Eigen::Vector3d& x, int triangle, Nearest& nearest) const;
   void search(const Eigen::Vector3d& x, Nearest& nearest) const;
 
   std::vector<Triangle> triangles_;  // leaf by leaf
   std::vector<std::array<Eigen::Vector3d, kFeatures>> pseudonormals_;
+  std::vector<std::array<bool, kFeatures>> touching_;  // where other sheets touch; empty: nowhere
   std::vector<Node> nodes_;
 };
 

@@ -4,10 +4,12 @@
 #include <utility>
 
 #include "hbar/core/base/error.h"
+#include "hbar/core/geometry/mesh_overlap.h"
 #include "hbar/core/geometry/surface_points.h"
 #include "hbar/core/model/model_builder.h"
 #include "hbar/core/scene/principal_axes.h"
-#include "hbar/core/scene/read_obj.h"
+#include "hbar/core/scene/read_mesh.h"
+#include "hbar/core/scene/read_points.h"
 #include "hbar/core/scene/spread_vertices.h"
 #include "hbar/core/scene/xml_element.h"
 
@@ -82,7 +84,8 @@ class BodyMaker {
   }
 
   [[nodiscard]] BuiltBody make(const MeshBody& shape) const {
-    TriangleMesh mesh = read_mesh(shape);  // in the OBJ's frame O
+    MendedMesh file = mesh_of(shape);  // in the file's frame O
+    TriangleMesh& mesh = file.mesh;
     const SolidMoments moments = solid_moments(mesh);
     const PrincipalAxes principal = principal_axes(moments.inertia);
     const Pose X_OB = {principal.axes, moments.centre};
@@ -108,21 +111,27 @@ class BodyMaker {
       vertex = X_BO.R * vertex + X_BO.p;
     }
     built.mesh = BodyMesh{std::move(mesh), scene_.folder / shape.filename, shape.distance_cells};
+    for (const std::string& notice : file.notices) {
+      built.notices.push_back(place("body", body_.line, "filename", shape.filename) + notice);
+    }
     return built;
   }
 
   /// The solid's surface in the OBJ's frame, scaled.
-  [[nodiscard]] TriangleMesh read_mesh(const MeshBody& shape) const {
+  [[nodiscard]] MendedMesh mesh_of(const MeshBody& shape) const {
     return with_place(place("body", body_.line, "filename", shape.filename), [&] {
-      TriangleMesh mesh = read_obj(scene_.folder / shape.filename);
-      for (Eigen::Vector3d& point : mesh.vertices) {
+      MendedMesh file = read_mesh(scene_.folder / shape.filename);
+      for (Eigen::Vector3d& point : file.mesh.vertices) {
         point = point.cwiseProduct(vector(shape.scale));
       }
-      if (!is_closed(mesh)) {
-        mesh = merge_equal_vertices(mesh);
+      if (vector(shape.scale).prod() < 0.0) {  // mirrored: the outside is the other side
+        for (std::array<int, 3>& triangle : file.mesh.triangles) {
+          std::swap(triangle[1], triangle[2]);
+        }
       }
-      check_solid(mesh);
-      return mesh;
+      check_solid(file.mesh);
+      check_overlap(file.mesh);
+      return file;
     });
   }
 

@@ -22,16 +22,17 @@ namespace hbar::scene {
 /// The surface of a mesh body, whose distance a contact may need.
 struct BodyMesh {
   TriangleMesh surface;        ///< in the body frame, length
-  std::filesystem::path file;  ///< its OBJ file
+  std::filesystem::path file;  ///< its file
   int cells = 0;               ///< along the longest side of its distance grid
 };
 
 /// A body of a model, with what its contacts and sensors need in addition.
 struct BuiltBody {
-  hbar::Body body;                    ///< with its contact points
-  RigidTransform<double> X_BG = {};   ///< the frame the scene gives points of it in: the OBJ
-                                      ///< file's of a mesh, that of pos and quat of any other
-  std::optional<BodyMesh> mesh = {};  ///< of a mesh body
+  hbar::Body body;                        ///< with its contact points
+  RigidTransform<double> X_BG = {};       ///< the frame the scene gives points of it in: the OBJ
+                                          ///< file's of a mesh, that of pos and quat of any other
+  std::optional<BodyMesh> mesh = {};      ///< of a mesh body
+  std::vector<std::string> notices = {};  ///< what the user should know, each `file:line: ...`
 };
 
 /// The bodies of a scene.

@@ -119,7 +119,7 @@ hbar::Motor make_motor(const Motor& motor, int link) {
 
 }  // namespace
 
-Model build_model(const Scene& scene) {
+Model build_model(const Scene& scene, std::vector<std::string>* notices) {
   const Description& description = scene.description;
   const bool metres = description.options.unit == UnitSystem::kMKg;
   ModelBuilder builder(description.model, metres ? Units::kMetreKilogram : Units::kCentimetreGram);
@@ -138,6 +138,11 @@ Model build_model(const Scene& scene) {
   }
   add_contacts(scene, bodies, builder);
   add_tactile_sensors(scene, bodies, builder);
+  for (const BuiltBody& body : bodies.of_link) {
+    if (notices != nullptr) {
+      notices->insert(notices->end(), body.notices.begin(), body.notices.end());
+    }
+  }
   return builder.build();
 }
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "hbar/core/base/unit_vector.h"
-#include "hbar/core/scene/read_obj.h"
+#include "hbar/core/scene/read_points.h"
 #include "hbar/core/scene/xml_element.h"
 
 namespace hbar::scene {

@@ -9,7 +9,9 @@ namespace hbar::scene {
 
 LoadedModel load_model(const std::filesystem::path& path) {
   Scene scene = read_scene(path);
-  return {build_model(scene), std::move(scene.notices)};
+  std::vector<std::string> notices = std::move(scene.notices);
+  Model model = build_model(scene, &notices);
+  return {std::move(model), std::move(notices)};
 }
 
 }  // namespace hbar::scene

@@ -1,54 +1,22 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <filesystem>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "hbar/core/geometry/mesh.h"
+#include "hbar/core/scene/polygon_mesh.h"
 
 namespace hbar::scene {
 
-/// The triangles of an OBJ file. Lines read: `v x y z` and `f` with three or more corners, each
-/// `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1, or from the last vertex as −1; polygons are
-/// cut into a fan from their first corner. Lines skipped: vt vn vp g o s usemtl mtllib, comments.
+/// The faces of an OBJ file. Lines read: `v x y z` and `f` with three or more corners, each `v`,
+/// `v/vt`, `v//vn` or `v/vt/vn` with parts after the first that may be empty; counted from 1, or
+/// from the last vertex as −1. Faces may come before their vertices. Lines skipped: vt vn vp g o s
+/// usemtl mtllib l p, and comments; a line that ends with \ goes on in the next.
 ///
-/// @throws IoError       if the file cannot be read
-/// @throws InvalidInput  that begins `file:line:` for anything else: a number that is not finite,
-///                       an index out of range, a polygon that repeats a corner, no face at all
-[[nodiscard]] TriangleMesh read_obj(const std::filesystem::path& path);
-
-/// The same from the text of a file that messages call `name`.
-[[nodiscard]] TriangleMesh read_obj_text(std::string_view text, const std::string& name);
-
-/// The points of a contacts file: a count, then that many lines x y z, in the scene's length unit.
-///
-/// @throws IoError       if the file cannot be read
-/// @throws InvalidInput  that begins `file:line:` if a line is anything else
-[[nodiscard]] std::vector<Eigen::Vector3d> read_contacts(const std::filesystem::path& path);
-
-/// The same from the text of a file that messages call `name`.
-[[nodiscard]] std::vector<Eigen::Vector3d> read_contacts_text(std::string_view text,
-                                                              const std::string& name);
-
-/// A point of a tactile sensor.
-struct SensorPoint {
-  Eigen::Vector3d position;  ///< length                             [3]
-  Eigen::Vector3d axis0;     ///< first shear direction, unit        [3]
-  Eigen::Vector3d axis1;     ///< second shear direction, unit       [3]
-};
-
-/// The points of a tactile sensor's file: a count, then that many lines of nine numbers: the
-/// position x y z in the scene's length unit, and the two axes, which may have any length but 0 and
-/// are not parallel.
-///
-/// @throws IoError       if the file cannot be read
-/// @throws InvalidInput  that begins `file:line:` if a line is anything else
-[[nodiscard]] std::vector<SensorPoint> read_sensor_points(const std::filesystem::path& path);
-
-/// The same from the text of a file that messages call `name`.
-[[nodiscard]] std::vector<SensorPoint> read_sensor_points_text(std::string_view text,
-                                                               const std::string& name);
+/// @param text  of the file
+/// @param name  what messages call it
+/// @throws InvalidInput  that begins `name:line:` for anything else: a number that is not finite,
+/// an
+///                       index out of range, no face at all
+[[nodiscard]] PolygonMesh read_obj_text(std::string_view text, const std::string& name);
 
 }  // namespace hbar::scene

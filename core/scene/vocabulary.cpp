@@ -17,6 +17,8 @@ std::string range_text(Range range) {
       return " >= 0";
     case Range::kNonZero:
       return ", not all 0";
+    case Range::kNoZero:
+      return ", none 0";
     case Range::kOrdered:
       return ", lower <= upper";
     case Range::kAtLeastOne:

@@ -19,6 +19,7 @@ enum class Range {
   kPositive,     ///< each > 0
   kNonNegative,  ///< each ≥ 0
   kNonZero,      ///< not all 0
+  kNoZero,       ///< none 0
   kOrdered,      ///< two, the first not above the second
   kAtLeastOne,   ///< each ≥ 1
   kAtLeastTwo,   ///< each ≥ 2

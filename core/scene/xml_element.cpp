@@ -250,6 +250,9 @@ void XmlElement::check_range(std::string_view attribute, const std::vector<doubl
       ok = !all([](double v) { return v == 0.0; });
       reason = "all numbers are 0";
       break;
+    case Range::kNoZero:
+      ok = all([](double v) { return v != 0.0; });
+      break;
     case Range::kOrdered:
       ok = values.size() == 2 && values[0] <= values[1];
       reason = "the lower number is above the upper one";

@@ -11,6 +11,7 @@ STANDARD = re.compile(r"[a-z_0-9]+$")
 LIBRARIES = {
     "eigen": r"(unsupported/)?Eigen/",
     "tinyxml2": r"tinyxml2\.h$",
+    "assimp": r"assimp/",
     "suitesparse": r"(suitesparse/)?(SuiteSparse_config|SuiteSparseQR|umfpack|klu|cholmod|amd|colamd|"
                    r"camd|ccolamd|btf|spqr|cs)\w*\.(h|hpp)$",
     "lapack": r"(lapacke|lapack|cblas)\.h$",
@@ -33,7 +34,7 @@ LAYERS = {
     "core/dynamics": (("core/model",), ("eigen",)),
     "core/parameters": (("core/dynamics",), ("eigen",)),
     "core/files": (("core/base",), ("eigen", "posix")),
-    "core/scene": (("core/files", "core/model"), ("eigen", "tinyxml2", "posix")),
+    "core/scene": (("core/files", "core/model"), ("eigen", "tinyxml2", "assimp", "posix")),
     "contact": (("core/parameters",), ("eigen",)),
     "solvers/linear": (("core/base",), ("eigen", "suitesparse", "lapack", "mumps")),
     "solvers/newton": (("core/base",), ("eigen",)),

@@ -103,8 +103,8 @@ TEST(CheckSolid, RefusesWithTheWholeMessage) {
   mesh = tetrahedron();
   mesh.triangles.push_back(mesh.triangles[0]);
   EXPECT_EQ(solid_refusal(mesh),
-            "mesh: the edge from (0, 0, 0) to (0, 1, 0) has 3 triangles; a closed surface has two "
-            "at each edge");
+            "mesh: the edge from (0, 0, 0) to (0, 1, 0) has 3 triangles, 2 of one orientation; a "
+            "closed surface has as many of each");
   mesh = tetrahedron();
   std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
   EXPECT_EQ(solid_refusal(mesh),
@@ -115,6 +115,22 @@ TEST(CheckSolid, RefusesWithTheWholeMessage) {
     std::swap(triangle[1], triangle[2]);
   }
   EXPECT_EQ(solid_refusal(mesh).substr(0, 49), "mesh: the surface encloses the volume -0.166667; ");
+}
+
+TEST(CheckSolid, ASurfaceMayTouchItself) {
+  TriangleMesh two = box({1.0, 1.0, 1.0});
+  const TriangleMesh one = two;
+  for (const Eigen::Vector3d& vertex : one.vertices) {
+    two.vertices.push_back(vertex + Eigen::Vector3d(1.0, 1.0, 0.0));
+  }
+  for (const std::array<int, 3>& t : one.triangles) {
+    two.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
+  }
+  const TriangleMesh touching = merge_equal_vertices(two);
+  ASSERT_EQ(touching.vertices.size(), 14U);  // an edge is shared
+  EXPECT_TRUE(is_closed(touching));
+  EXPECT_EQ(solid_refusal(touching), "accepted");
+  EXPECT_NEAR(solid_moments(touching).volume, 2.0, 1e-15);
 }
 
 TEST(MergeEqualVertices, ClosesASurfaceOfLooseTriangles) {

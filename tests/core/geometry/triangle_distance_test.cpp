@@ -260,5 +260,80 @@ TEST(TriangleDistance, RefusesWhatBoundsNoSolidAndSaysWhere) {
   EXPECT_EQ(distance_refusal({}), "mesh: no triangle; a solid needs at least 4");
 }
 
+/// Several boxes in one mesh, with vertices of equal coordinates shared.
+TriangleMesh boxes(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& centre_size) {
+  TriangleMesh all;
+  for (const auto& [centre, size] : centre_size) {
+    const int first = static_cast<int>(all.vertices.size());
+    const TriangleMesh box = box_mesh(size);
+    for (const Eigen::Vector3d& vertex : box.vertices) {
+      all.vertices.push_back(vertex + centre);
+    }
+    for (std::array<int, 3> t : box.triangles) {
+      all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+  }
+  return merge_equal_vertices(all);
+}
+
+const Eigen::Vector3d kUnit = Eigen::Vector3d::Ones();
+
+/// Two cubes that share an edge along z.
+TriangleMesh at_an_edge() { return boxes({{{-0.5, -0.5, 0.0}, kUnit}, {{0.5, 0.5, 0.0}, kUnit}}); }
+
+/// Two cubes that share a vertex.
+TriangleMesh at_a_vertex() {
+  return boxes({{{-0.5, -0.5, -0.5}, kUnit}, {{0.5, 0.5, 0.5}, kUnit}});
+}
+
+/// The distance to a union of boxes by that to each: exact outside; inside, where they do not
+/// overlap, too.
+double union_distance(const std::vector<Eigen::Vector3d>& centres, const Eigen::Vector3d& x) {
+  double least = 1e300;
+  for (const Eigen::Vector3d& centre : centres) {
+    least = std::min(least, box_distance(kUnit, x - centre));
+  }
+  return least;
+}
+
+TEST(TriangleDistance, OfSolidsThatTouchIsThatOfTheUnion) {
+  std::mt19937 random(1);
+  const TriangleDistance edge(at_an_edge());
+  const TriangleDistance vertex(at_a_vertex());
+  for (int i = 0; i < 3000; ++i) {
+    const Eigen::Vector3d x = random_point(random, 1.6);
+    EXPECT_NEAR(edge.signed_distance(x), union_distance({{-0.5, -0.5, 0.0}, {0.5, 0.5, 0.0}}, x),
+                1e-14);
+    EXPECT_NEAR(vertex.signed_distance(x), union_distance({{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}}, x),
+                1e-14);
+  }
+}
+
+/// A cube of 3 with two cubic cavities of 1 that touch along an edge.
+TEST(TriangleDistance, CavitiesThatTouchAreOutside) {
+  TriangleMesh mesh = box_mesh({3.0, 3.0, 3.0});
+  const std::vector<Eigen::Vector3d> centres = {{-0.5, -0.5, 0.0}, {0.5, 0.5, 0.0}};
+  for (const Eigen::Vector3d& centre : centres) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (const Eigen::Vector3d& vertex : box_mesh(kUnit).vertices) {
+      mesh.vertices.push_back(vertex + centre);
+    }
+    for (const std::array<int, 3>& t : box_mesh(kUnit).triangles) {
+      mesh.triangles.push_back({t[0] + first, t[2] + first, t[1] + first});
+    }
+  }
+  const TriangleDistance distance(merge_equal_vertices(mesh));
+  std::mt19937 random(2);
+  int within = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Eigen::Vector3d x = random_point(random, 1.9);
+    const double expected = std::max(box_distance({3.0, 3.0, 3.0}, x), -union_distance(centres, x));
+    const double found = distance.signed_distance(x);
+    EXPECT_EQ(found < 0.0, expected < 0.0) << x.transpose();
+    within += found < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(within, 500);
+}
+
 }  // namespace
 }  // namespace hbar

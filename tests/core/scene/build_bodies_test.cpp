@@ -5,7 +5,7 @@
 
 #include "hbar/core/geometry/surface_points.h"
 #include "hbar/core/scene/build_model.h"
-#include "hbar/core/scene/read_obj.h"
+#include "hbar/core/scene/read_mesh.h"
 #include "hbar/core/scene/spread_vertices.h"
 #include "tests/core/scene/scene_testing.h"
 #include "tests/support/temporary_folder.h"
@@ -134,7 +134,7 @@ TEST_F(MadeBodies, MeshesHaveThePointsOfTheirFile) {
 }
 
 TEST_F(MadeBodies, MeshesHaveVerticesWhereThereIsNoFile) {
-  const TriangleMesh file = read_obj(folder_ / "wedge.obj");
+  const TriangleMesh file = read_mesh(folder_ / "wedge.obj").mesh;
   for (const int count : {1, 3, 64}) {
     const BuiltBody body =
         built(concat("<body type=\"mesh\" filename=\"wedge.obj\" transform_type=\"OBJ_TO_JOINT\" "
@@ -145,6 +145,37 @@ TEST_F(MadeBodies, MeshesHaveVerticesWhereThereIsNoFile) {
     ASSERT_EQ(body.body.contact_points.cols(), expected.cols());
     EXPECT_LT(((X_JB.R * body.body.contact_points).colwise() + X_JB.p - expected).norm(), 1e-15);
   }
+}
+
+TEST_F(MadeBodies, MirroredMeshesHaveTheirOutsideOutside) {
+  const auto wedge = [this](const char* scale) {
+    return built(
+        concat("<body type=\"mesh\" filename=\"wedge.obj\" transform_type=\"OBJ_TO_JOINT\" "
+               "scale=\"",
+               scale, "\"/>"));
+  };
+  const BuiltBody straight = wedge("1 1 1");
+  const BuiltBody mirrored = wedge("1 -1 1");
+  EXPECT_NEAR(mirrored.body.mass, straight.body.mass, 1e-15);
+  EXPECT_LT((mirrored.body.inertia - straight.body.inertia).norm(), 1e-15);
+  EXPECT_LT(
+      (mirrored.body.X_JB.p - straight.body.X_JB.p.cwiseProduct(Eigen::Vector3d(1, -1, 1))).norm(),
+      1e-15);
+  EXPECT_NO_THROW(check_solid(mirrored.mesh->surface));
+}
+
+TEST_F(MadeBodies, WhatWasMendedInAMeshIsTold) {
+  // Near a corner of a cube, on the one face only, is another vertex.
+  std::ofstream(folder_ / "cube.obj")
+      << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+         "v 1 1 1.0000000001\nf 4 3 2 1\nf 5 6 9 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  const BuiltBody body = built("<body type=\"mesh\" filename=\"cube.obj\"/>");
+  ASSERT_EQ(body.notices.size(), 1U);
+  EXPECT_EQ(
+      body.notices[0].substr(body.notices[0].find("<body")),
+      "<body filename=\"cube.obj\">: a vertex lies within 1e-6 of the bounding box's diagonal "
+      "of another: merged");
+  EXPECT_NEAR(body.body.mass, 1.0, 1e-9);
 }
 
 TEST_F(MadeBodies, MeshesKeepTheirSurfaceInTheBodyFrame) {
