@@ -140,6 +140,7 @@ Inputs InputVariables::inputs(const Eigen::VectorXd& x) const {
     out.q0 = x.segment(state_place(), dof);
     out.qdot0 = x.segment(state_place() + dof, dof);
   }
+  round_into_range(problem_.horizon.parameters(), out.p);
   return out;
 }
 

@@ -107,7 +107,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& path,
                                             const scene::Scene& scene) {
   std::vector<std::filesystem::path> files = {path};
   const auto add = [&files, &scene](const std::string& name) {
-    const std::filesystem::path file = scene.folder / name;
+    const std::filesystem::path file = scene.find(name);
     if (std::find(files.begin(), files.end(), file) == files.end()) {
       files.push_back(file);
     }

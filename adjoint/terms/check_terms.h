@@ -27,6 +27,8 @@ struct TermCheck {
   /// Order in ε of the difference between c(x + ε δ) and its quadratic model: 3 if all partials are
   /// right; infinite if the remainder is only rounding.
   double second_slope = std::numeric_limits<double>::infinity();
+  /// Entries of which no difference is exact enough to tell, at any step: they count in no gap.
+  int unresolved = 0;
   int repeated = 0;  ///< pairs that second_places lists more than once
   int idle = 0;      ///< listed pairs whose second partial is zero at these values
 
@@ -35,7 +37,9 @@ struct TermCheck {
 };
 
 /// Compares a term's partials and second partials with differences of its values and partials.
-/// Costs about eight evaluations of the term per number: meant for small made-up values.
+/// Steps are as small as each entry needs, so that terms that saturate, or grow fast, are judged
+/// rightly, too. Costs up to thirty evaluations of the term per number: meant for small made-up
+/// values.
 ///
 /// @param values  where to check, away from kinks; any numbers of a trajectory's shape
 /// @throws InvalidInput if the term reads a number that the values do not contain

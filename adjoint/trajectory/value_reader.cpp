@@ -42,16 +42,28 @@ TrajectoryValues ValueReader::values(const Trajectory& trajectory) {
 std::vector<std::vector<ContactSummary>> ValueReader::contact_history(
     const Trajectory& trajectory) {
   require_trajectory_of(horizon_, trajectory);
-  const Model& model = horizon_.model();
   std::vector<std::vector<ContactSummary>> out;
   for (int k = 0; k <= trajectory.step_count(); ++k) {
-    compute_motion<double>(model.tree(), *trajectory.mechanism, trajectory.q_at_step(k),
-                           trajectory.qdot_at_step(k), none_, motion_);
-    contacts_.evaluate(*trajectory.mechanism, motion_);
-    out.emplace_back();
-    for (int i = 0; i < model.contact_count(); ++i) {
-      out.back().push_back(contacts_.summary(i));
-    }
+    out.push_back(
+        contacts_at(*trajectory.mechanism, trajectory.q_at_step(k), trajectory.qdot_at_step(k)));
+  }
+  return out;
+}
+
+std::vector<ContactSummary> ValueReader::contacts_at_start(const Inputs& inputs) {
+  horizon_.check(inputs);
+  return contacts_at(*horizon_.mechanism(inputs.p), inputs.q0, inputs.qdot0);
+}
+
+std::vector<ContactSummary> ValueReader::contacts_at(const Mechanism<double>& mechanism,
+                                                     const Eigen::VectorXd& q,
+                                                     const Eigen::VectorXd& qdot) {
+  const Model& model = horizon_.model();
+  compute_motion<double>(model.tree(), mechanism, q, qdot, none_, motion_);
+  contacts_.evaluate(mechanism, motion_);
+  std::vector<ContactSummary> out;
+  for (int i = 0; i < model.contact_count(); ++i) {
+    out.push_back(contacts_.summary(i));
   }
   return out;
 }

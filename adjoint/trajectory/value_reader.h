@@ -23,7 +23,14 @@ class ValueReader {
   [[nodiscard]] std::vector<std::vector<ContactSummary>> contact_history(
       const Trajectory& trajectory);
 
+  /// What each contact does in the initial state.                                    [contact]
+  [[nodiscard]] std::vector<ContactSummary> contacts_at_start(const Inputs& inputs);
+
  private:
+  [[nodiscard]] std::vector<ContactSummary> contacts_at(const Mechanism<double>& mechanism,
+                                                        const Eigen::VectorXd& q,
+                                                        const Eigen::VectorXd& qdot);
+
   Horizon horizon_;
   Measurements<double> measurements_;
   InstantMotion<double> instants_;

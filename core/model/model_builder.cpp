@@ -5,6 +5,7 @@
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/base/unit_vector.h"
+#include "hbar/core/model/moments.h"
 
 namespace hbar {
 namespace {
@@ -79,10 +80,10 @@ void check_body(const Body& body) {
   const Eigen::Vector3d& I = body.inertia;
   require(I.allFinite() && I.minCoeff() > 0.0,
           concat(where, ": principal moments are (", listed(I), "); they must be positive"));
-  const double tolerance = 1e-9 * I.sum();
-  require(2.0 * I.maxCoeff() <= I.sum() + tolerance,
+  require(excess_of_moments(I) <= kRoundedMoments,
           concat(where, ": principal moments are (", listed(I),
-                 "); none may exceed the sum of the other two"));
+                 "); none may exceed the sum of the other two, as one does by ",
+                 excess_of_moments(I), " of it"));
   require(body.contact_points.allFinite(), where + ": its contact points must be finite");
 }
 

@@ -6,6 +6,7 @@
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/base/nearest_name.h"
+#include "hbar/core/model/moments.h"
 #include "hbar/core/parameters/parameter_kinds.h"
 
 namespace hbar {
@@ -16,18 +17,8 @@ bool selects(std::string_view wanted, std::string_view name) {
   return name.starts_with(wanted) && (name.size() == wanted.size() || name[wanted.size()] == '.');
 }
 
-/// Numbers outside the range of their kinds.
-template <Scalar S>
-void require_ranges(const ParameterSet& set, const VectorView<S>& p) {
-  for (int i = 0; i < set.size(); ++i) {
-    const double value = value_of(p[i]);
-    const ParameterRange range = row_of(set[i].kind).range;
-    if ((range == ParameterRange::kNonNegative && value < 0.0) ||
-        (range == ParameterRange::kPositive && !(value > 0.0))) {
-      throw InvalidInput(concat(set[i].name, " is ", value, "; it must be ",
-                                range == ParameterRange::kPositive ? "positive" : "≥ 0"));
-    }
-  }
+[[noreturn]] void refuse_value(const Parameter& parameter, double value, const char* range) {
+  throw InvalidInput(concat(parameter.name, " is ", value, "; it must be ", range));
 }
 
 void require_physical(const Model& model, const Eigen::VectorXd& mass,
@@ -38,7 +29,7 @@ void require_physical(const Model& model, const Eigen::VectorXd& mass,
       throw InvalidInput(concat("body.", body, ".mass is ", mass[i], "; it must be positive"));
     }
     const Eigen::Vector3d I = moments.col(i);
-    if (!(I.minCoeff() > 0.0) || 2.0 * I.maxCoeff() > I.sum() * (1.0 + 1e-9)) {
+    if (!(I.minCoeff() > 0.0) || excess_of_moments(I) > kRoundedMoments) {
       throw InvalidInput(concat("body.", body, ".inertia is (", listed(I),
                                 "); moments must be positive and none may exceed the sum of the "
                                 "other two (see inertia_chart for a chart that keeps to that)"));
@@ -184,13 +175,39 @@ void require_parameters_of(const Model& model, const ParameterSet& set) {
   }
 }
 
+void require_in_range(const ParameterSet& set, const Eigen::VectorXd& p) {
+  for (int i = 0; i < set.size(); ++i) {
+    const ParameterRange range = row_of(set[i].kind).range;
+    if (range == ParameterRange::kNonNegative && p[i] < 0.0) {
+      refuse_value(set[i], p[i], "≥ 0");
+    }
+    if (range == ParameterRange::kPositive && !(p[i] > 0.0)) {
+      refuse_value(set[i], p[i], "positive");
+    }
+  }
+}
+
+void round_into_range(const ParameterSet& set, Eigen::VectorXd& p) {
+  constexpr double kRelaxed = 1e-6;
+  for (int i = 0; i < set.size(); ++i) {
+    const bool rounded = p[i] < 0.0 && p[i] > -kRelaxed * std::max(1.0, std::abs(set[i].nominal));
+    if (rounded && row_of(set[i].kind).range == ParameterRange::kNonNegative) {
+      p[i] = 0.0;
+    }
+  }
+}
+
 template <Scalar S>
 void apply_parameters(const Model& model, const ParameterSet& set, const VectorView<S>& p,
                       Mechanism<S>& mechanism) {
   if (p.size() != set.size()) {
     throw InvalidInput(concat("p has ", p.size(), " entries; the parameter set has ", set.size()));
   }
-  require_ranges<S>(set, p);
+  for (int i = 0; i < set.size(); ++i) {  // what is divided by
+    if (row_of(set[i].kind).range == ParameterRange::kPositive && !(value_of(p[i]) > 0.0)) {
+      refuse_value(set[i], value_of(p[i]), "positive");
+    }
+  }
   mechanism = nominal_mechanism<S>(model);
   std::vector<ParameterValue<S>> values;
   for (const ParameterBlock& block : set.blocks()) {

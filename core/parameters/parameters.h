@@ -70,12 +70,23 @@ class ParameterSet {
 ///         lacks, or whose nominal value or bound is another one there
 void require_parameters_of(const Model& model, const ParameterSet& set);
 
+/// @param p  values of the set's parameters                                     [set.size()]
+/// @throws InvalidInput naming the first parameter that is negative and must not be (stiffness,
+///   damping, motor gains, contact coefficients and scales) or not positive and must be (sizes)
+void require_in_range(const ParameterSet& set, const Eigen::VectorXd& p);
+
+/// Sets to 0 what require_in_range would refuse for being negative by less than 1e-6 of its nominal
+/// value or of 1: optimisers relax bounds by about 1e-8.
+///
+/// @param[in,out] p  values of the set's parameters                             [set.size()]
+void round_into_range(const ParameterSet& set, Eigen::VectorXd& p);
+
 /// Sets a mechanism's numbers to the model's own, with p in place of those in the set.
 ///
 /// @param p  values of the set's parameters                                     [set.size()]
-/// @throws InvalidInput if p has another size, is not finite, or makes a mass or moment
+/// @throws InvalidInput if p has another size, is not finite, or makes a mass, moment or size
 ///         non-positive or the moments violate the triangle inequality; the message names the
-///         parameter
+///         parameter. Other ranges are require_in_range's
 template <Scalar S>
 void apply_parameters(const Model& model, const ParameterSet& set, const VectorView<S>& p,
                       Mechanism<S>& mechanism);

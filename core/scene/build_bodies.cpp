@@ -110,7 +110,7 @@ class BodyMaker {
     for (Eigen::Vector3d& vertex : mesh.vertices) {
       vertex = X_BO.R * vertex + X_BO.p;
     }
-    built.mesh = BodyMesh{std::move(mesh), scene_.folder / shape.filename, shape.distance_cells};
+    built.mesh = BodyMesh{std::move(mesh), scene_.find(shape.filename), shape.distance_cells};
     for (const std::string& notice : file.notices) {
       built.notices.push_back(place("body", body_.line, "filename", shape.filename) + notice);
     }
@@ -120,7 +120,7 @@ class BodyMaker {
   /// The solid's surface in the OBJ's frame, scaled.
   [[nodiscard]] MendedMesh mesh_of(const MeshBody& shape) const {
     return with_place(place("body", body_.line, "filename", shape.filename), [&] {
-      MendedMesh file = read_mesh(scene_.folder / shape.filename);
+      MendedMesh file = read_mesh(scene_.find(shape.filename));
       for (Eigen::Vector3d& point : file.mesh.vertices) {
         point = point.cwiseProduct(vector(shape.scale));
       }
@@ -139,7 +139,7 @@ class BodyMaker {
   [[nodiscard]] Eigen::Matrix3Xd contacts(const char* element, SourceLine line,
                                           const std::string& file, const Vec3& scale) const {
     return with_place(place(element, line, "contacts", file), [&] {
-      const std::vector<Eigen::Vector3d> points = read_contacts(scene_.folder / file);
+      const std::vector<Eigen::Vector3d> points = read_contacts(scene_.find(file));
       Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(points.size()));
       for (std::size_t i = 0; i < points.size(); ++i) {
         columns.col(static_cast<Eigen::Index>(i)) = points[i].cwiseProduct(vector(scale));

@@ -42,7 +42,7 @@ std::vector<SensorPoint> rectangle_points(const RectArray& rect) {
 
 std::vector<SensorPoint> listed_points(const Scene& scene, const PointList& list) {
   const Pose X = pose(list.pos, list.quat);
-  std::vector<SensorPoint> points = read_sensor_points(scene.folder / list.spec);
+  std::vector<SensorPoint> points = read_sensor_points(scene.find(list.spec));
   if (points.empty()) {
     throw InvalidInput("the file has no point; a sensor has at least one");
   }

@@ -6,13 +6,6 @@
 #include "hbar/core/base/error.h"
 
 namespace hbar::scene {
-namespace {
-
-/// Rounding that three moments of a flat body may carry, relative to the largest.
-constexpr double kFlatSlack = 1e-12;
-
-}  // namespace
-
 PrincipalAxes principal_axes(const Eigen::Matrix3d& inertia) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
   PrincipalAxes result{solver.eigenvalues(), solver.eigenvectors()};
@@ -37,12 +30,6 @@ Eigen::Matrix3d symmetric_matrix(const std::vector<double>& entries) {
       entries[1], entries[3], entries[4],        //
       entries[2], entries[4], entries[5];
   return matrix;
-}
-
-bool are_physical_moments(const Eigen::Vector3d& moments) {
-  const double largest = moments.maxCoeff();
-  const double others = moments.sum() - largest;
-  return moments.minCoeff() > 0.0 && others >= largest * (1.0 - kFlatSlack);
 }
 
 }  // namespace hbar::scene

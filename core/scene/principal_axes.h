@@ -22,7 +22,4 @@ struct PrincipalAxes {
 /// @throws InvalidInput if there are not six
 [[nodiscard]] Eigen::Matrix3d symmetric_matrix(const std::vector<double>& entries);
 
-/// Whether moments can belong to a body: positive, none above the sum of the other two.
-[[nodiscard]] bool are_physical_moments(const Eigen::Vector3d& moments);
-
 }  // namespace hbar::scene

@@ -40,4 +40,7 @@ void read_defaults(const tinyxml2::XMLElement& block, ReadContext& context);
 /// @throws InvalidInput for the first that do not
 void check_references(const Description& description, const ReadContext& context);
 
+/// Notices what was given and has no effect, or is doubtful, for want of something else.
+void notice_effects(const Description& description, ReadContext& context);
+
 }  // namespace hbar::scene

@@ -7,6 +7,7 @@
 #include "hbar/core/base/error.h"
 #include "hbar/core/base/unit_vector.h"
 #include "hbar/core/files/numbers.h"
+#include "hbar/core/model/moments.h"
 #include "hbar/core/scene/principal_axes.h"
 #include "hbar/core/scene/read_elements.h"
 
@@ -42,6 +43,18 @@ void check_limits(const XmlElement& element, const Joint& joint) {
       element.line(),
       concat("<joint", name, ">: the limits exclude the start configuration 0; ",
              joint.lim_stiffness > 0.0 ? "their spring pulls it" : "give a start inside them"));
+}
+
+/// Damping by default is meant for a robot's joints; it reaches what flies and falls, too.
+void notice_default_damping(const XmlElement& element, const Joint& joint) {
+  const bool is_free = joint.type == JointType::kFree2d || joint.type == JointType::kFree3dEuler ||
+                       joint.type == JointType::kFree3dExp;
+  if (is_free && joint.damping > 0.0 && element.is_by_default("damping")) {
+    element.context().notice(
+        element.line(), concat("<joint", joint.name.empty() ? "" : " name=\"" + joint.name + '"',
+                               ">: the default damping ", joint.damping,
+                               " slows this free body, too; damping=\"0\" leaves it free"));
+  }
 }
 
 CuboidBody read_cuboid(const XmlElement& element) {
@@ -85,8 +98,15 @@ void check_inertia(const XmlElement& element, const std::vector<double>& inertia
   if (!(moments.minCoeff() > 0.0)) {
     element.fail("inertia", "a moment is not positive", hint);
   }
-  if (!are_physical_moments(moments)) {
-    element.fail("inertia", "one moment is above the sum of the other two", hint);
+  const double excess = excess_of_moments(moments);
+  const std::string reason =
+      concat("one moment is above the sum of the other two, by ", excess, " of it");
+  if (excess > kRoundedMoments) {
+    element.fail("inertia", reason, hint);
+  }
+  if (excess > 0.0) {
+    element.context().notice(element.line(),
+                             concat("<body>: inertia: ", reason, ": taken as rounded"));
   }
 }
 
@@ -242,6 +262,7 @@ Joint read_joint(XmlElement element) {
     }
   }
   joint.damping = element.number("damping");
+  notice_default_damping(element, joint);
   joint.stiffness = element.number("stiffness");
   const auto dof = static_cast<std::size_t>(coordinate_count(joint.type));
   joint.rest.assign(dof, 0.0);

@@ -2,6 +2,7 @@
 
 #include <tinyxml2.h>
 
+#include <system_error>
 #include <utility>
 
 #include "hbar/core/files/text_file.h"
@@ -28,7 +29,6 @@ class SceneReader {
     for (const tinyxml2::XMLElement* child : children) {
       read_section(*child);
     }
-    notice_missing_ground();
   }
 
  private:
@@ -77,20 +77,6 @@ class SceneReader {
                     "law=\"linear\" is what earlier readers of this format do");
   }
 
-  /// A scene may omit its ground, but hardly on purpose if bodies touch it.
-  void notice_missing_ground() {
-    if (description_.ground) {
-      return;
-    }
-    for (const Contact& contact : description_.contacts) {
-      if (contact.kind != ContactKind::kGround) {
-        continue;
-      }
-      context_.notice(contact.line.number,
-                      "<ground_contact>: the scene has no <ground>, so it is the plane z = 0");
-    }
-  }
-
   ReadContext& context_;
   Description& description_;
 };
@@ -130,13 +116,29 @@ Scene read_scene_text(std::string_view text, const std::string& name,
                        "the scene has no link; <robot> holds at least one <link>");
   }
   check_references(scene.description, context);
+  notice_effects(scene.description, context);
   scene.notices = std::move(context.notices);
   return scene;
 }
 
+std::filesystem::path Scene::find(const std::string& name) const {
+  std::error_code code;
+  const std::filesystem::path beside_target = target_folder / name;
+  return !std::filesystem::exists(folder / name, code) && !target_folder.empty() &&
+                 std::filesystem::exists(beside_target, code)
+             ? beside_target
+             : folder / name;
+}
+
 Scene read_scene(const std::filesystem::path& path) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  return read_scene_text(read_text_file(path), path.filename().string(), folder);
+  const auto folder_of = [](const std::filesystem::path& file) {
+    return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  };
+  Scene scene = read_scene_text(read_text_file(path), path.filename().string(), folder_of(path));
+  std::error_code code;
+  const std::filesystem::path target = std::filesystem::canonical(path, code);
+  scene.target_folder = code ? scene.folder : folder_of(target);
+  return scene;
 }
 
 }  // namespace hbar::scene

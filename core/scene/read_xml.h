@@ -15,6 +15,11 @@ struct Scene {
   std::vector<std::string> notices;  ///< what the user should know, each `file:line: ...`
   std::string file;                  ///< its name, as messages spell it
   std::filesystem::path folder;      ///< where the files it names are looked for
+  /// Where they are looked for next: beside what a symbolic link to the scene leads to.
+  std::filesystem::path target_folder = {};
+
+  /// A file that the scene names.
+  [[nodiscard]] std::filesystem::path find(const std::string& name) const;
 };
 
 /// Reads a scene file in the format of doc/scene_format.md. Files it names are not opened.

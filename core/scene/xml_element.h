@@ -59,6 +59,10 @@ class XmlElement {
 
   /// Whether the element or a default block gives the attribute.
   [[nodiscard]] bool has(std::string_view attribute) const;
+  /// Whether an attribute's value comes from a `<default>` block.
+  [[nodiscard]] bool is_by_default(std::string_view attribute) const {
+    return found(attribute).from_default;
+  }
   /// Whether the element itself gives the attribute.
   [[nodiscard]] bool states(std::string_view attribute) const;
 

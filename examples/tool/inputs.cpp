@@ -7,6 +7,7 @@
 
 #include "entries.h"
 #include "examples/common/process.h"
+#include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/files/numbers.h"
 #include "hbar/core/files/text_file.h"
 #include "labels.h"
@@ -106,6 +107,38 @@ void set_state(const std::optional<std::vector<double>>& given, std::string_view
       Eigen::Map<const Eigen::VectorXd>(given->data(), static_cast<Eigen::Index>(given->size()));
 }
 
+/// Total mass of the bodies.
+double mass_of(const Model& model) {
+  double mass = 0.0;
+  for (int i = 0; i < model.link_count(); ++i) {
+    mass += model.link(i).body.mass;
+  }
+  return mass;
+}
+
+/// A contact that begins pushing with a hundred times the weight of all bodies throws them out.
+void notice_start(LoadedProblem& loaded) {
+  constexpr double kWeights = 100.0;
+  const Horizon& horizon = loaded.problem.horizon;
+  const Model& model = horizon.model();
+  if (model.contact_count() == 0) {
+    return;
+  }
+  const double weight = mass_of(model) * model.gravity().norm();
+  const std::vector<ContactSummary> contacts =
+      ValueReader(horizon).contacts_at_start(loaded.problem.inputs);
+  for (int i = 0; i < model.contact_count(); ++i) {
+    const ContactSummary& contact = contacts[static_cast<std::size_t>(i)];
+    if (contact.normal_force > kWeights * weight && contact.penetration > 0.0) {
+      loaded.notices.push_back(fmt::format(
+          "contact {}: starts {:g} deep, where its normal force is {:g}: more than {:g} times the "
+          "weight of all bodies; it will throw them apart",
+          contact_names(model)[static_cast<std::size_t>(i)], contact.penetration,
+          contact.normal_force, kWeights));
+    }
+  }
+}
+
 }  // namespace
 
 LoadedProblem load(const Arguments& arguments) {
@@ -119,6 +152,7 @@ LoadedProblem load(const Arguments& arguments) {
       inputs.u = read_controls(*arguments.controls, model, arguments.load.steps);
       loaded.files.emplace_back(*arguments.controls);
     }
+    notice_start(loaded);
     return loaded;
   } catch (const InvalidOption& error) {
     throw ProgramError(ExitCode::kUsage, error.what());

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "hbar/adjoint/terms/generic_terms.h"
 #include "hbar/adjoint/terms/objective_terms.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/random_values.h"
@@ -132,6 +135,97 @@ TEST_F(CheckTerms, RefusesPlacesThatAreNotThere) {
   EXPECT_THROW(static_cast<void>(
                    check_objective_term(*faulty_term(0.0, 0.0, {{1, kRate, kTorque}}), values_)),
                InvalidInput);
+}
+
+/// Rates of three coordinates over two steps that differ in size.
+TrajectoryValues rates(double scale) {
+  TrajectoryValues values = testing::random_values(9);
+  values.qdot.leftCols(3) << 0, 0.9, 0.5, 0, -0.4, 0.3, 0, 0.2, -0.8;
+  values.qdot *= scale;
+  return values;
+}
+
+std::vector<std::vector<ValuePlace>> rate_groups() {
+  std::vector<std::vector<ValuePlace>> groups;
+  for (int k = 1; k <= 2; ++k) {
+    groups.push_back({{ValueField::kQdot, k, 0}, {ValueField::kQdot, k, 1},
+                      {ValueField::kQdot, k, 2}});
+  }
+  return groups;
+}
+
+/// A smooth largest magnitude: log Σ (exp βx + exp −βx) / β, saturated where βx is large.
+TermPointer largest_rate(double beta) {
+  return generic_sum("largest", rate_groups(), [beta](auto x) {
+    using std::exp;
+    using std::log;
+    auto sum = exp(beta * x[0]) + exp(-beta * x[0]);
+    for (std::size_t i = 1; i < x.size(); ++i) {
+      sum = sum + exp(beta * x[i]) + exp(-beta * x[i]);
+    }
+    return log(sum) / beta;
+  });
+}
+
+/// A term with a factor on its partials and second partials, right where both are 1.
+TermPointer spoiled(TermPointer right, double first, double second) {
+  return user_term(
+      "spoiled", [right](const TrajectoryValues& x) { return right->value(x); },
+      [right, first](const TrajectoryValues& x, TrajectoryPartials& partials) {
+        TrajectoryPartials its(x);
+        right->add_partials(x, its);
+        partials.qdot += first * its.qdot;
+      },
+      {[right](const TrajectoryValues& x) { return right->second_places(x); },
+       [right, second](const TrajectoryValues& x, Eigen::Ref<Eigen::VectorXd> out) {
+         right->second_partials(x, out);
+         out *= second;
+       }});
+}
+
+TEST_F(CheckTerms, JudgesTermsNearSaturationRightly) {
+  for (const double scale : {1.0, 5.0, 20.0}) {
+    for (const double beta : {1.0, 4.0, 16.0}) {
+      SCOPED_TRACE(concat("scale ", scale, ", beta ", beta));
+      const TrajectoryValues values = rates(scale);
+      const TermPointer right = largest_rate(beta);
+      const TermCheck check = check_objective_term(*right, values);
+      EXPECT_TRUE(check.passed()) << check.gap << ' ' << check.slope << ' ' << check.second_gap << ' '
+                                  << check.second_slope;
+      EXPECT_TRUE(check_objective_term(*spoiled(right, 1.0, 1.0), values).passed());
+      const TermCheck first = check_objective_term(*spoiled(right, 1.0 + 1e-5, 1.0), values);
+      EXPECT_FALSE(first.passed());
+      EXPECT_NEAR(first.gap, 1e-5, 1e-5);
+      EXPECT_FALSE(check_objective_term(*spoiled(right, -1.0, 1.0), values).passed());
+    }
+  }
+  // A second partial is judged where there is one worth the name.
+  for (const double beta : {1.0, 4.0}) {
+    EXPECT_FALSE(check_objective_term(*spoiled(largest_rate(beta), 1.0, 1.001), rates(1.0)).passed());
+  }
+}
+
+TEST_F(CheckTerms, JudgesSteepTermsRightly) {
+  const auto both = [](const char* name, const auto& f, const TrajectoryValues& values) {
+    const TermPointer right = generic_sum(name, rate_groups(), f);
+    const TermCheck check = check_objective_term(*right, values);
+    EXPECT_TRUE(check.passed()) << name << ": " << check.gap << ' ' << check.slope << ' '
+                                << check.second_gap << ' ' << check.second_slope;
+    EXPECT_FALSE(check_objective_term(*spoiled(right, 1.0 + 1e-5, 1.0), values).passed()) << name;
+    EXPECT_FALSE(check_objective_term(*spoiled(right, 1.0, 1.001), values).passed()) << name;
+  };
+  both(
+      "tanh", [](auto x) { using std::tanh; return tanh(40.0 * x[0]) + x[1] * x[1]; }, rates(1.0));
+  both(
+      "exponential", [](auto x) { using std::exp; return exp(60.0 * x[0] * x[0]); }, rates(1.0));
+  both(
+      "barrier",
+      [](auto x) { using std::log; return -log(x[0] * x[0] + 1e-4) - log(1.0001 - x[1] * x[1]); },
+      rates(1.0));
+  both(
+      "root",
+      [](auto x) { using std::sqrt; return sqrt(x[0] * x[0] + 1e-6) + sqrt(x[2] * x[2] + 1e-8); },
+      rates(1.0));
 }
 
 }  // namespace

@@ -142,7 +142,8 @@ TEST(ModelBuilder, RefusesBodiesThatCannotBe) {
           [](Body& b) {
             b.inertia = {1.0, 1.0, 2.5};
           },
-          "principal moments are (1 1 2.5); none may exceed the sum of the other two"),
+          "principal moments are (1 1 2.5); none may exceed the sum of the other two, as one "
+          "does by 0.2 of it"),
   });
 }
 

@@ -8,6 +8,7 @@
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/geometry/surface_points.h"
+#include "hbar/core/model/model_builder.h"
 #include "hbar/core/parameters/parameter_kinds.h"
 #include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
@@ -349,13 +350,37 @@ TEST(ApplyParameters, ReadsMassAndPointsAsThoseAtNominalSizes) {
             1e-15);
 }
 
+TEST(RequireInRange, RefusesNegativeStiffnessDampingAndGains) {
+  ModelBuilder builder("m");
+  const int link = builder.add_link(-1, {.name = "j", .kind = RevoluteJoint{{0, 0, 1}}},
+                                    solid_body("b", Sphere{1.0}, 1.0));
+  builder.add_motor({.link = link, .kind = Motor::Kind::kPosition, .P = 2.0, .D = 1.0});
+  const Model model = builder.build();
+  for (const char* name : {"joint.j.stiffness", "joint.j.damping", "motor.j.P", "motor.j.D"}) {
+    const ParameterSet set = ParameterSet::named(model, {name});
+    const auto message = [&set](double value) {
+      return message_of<InvalidInput>([&] { require_in_range(set, VectorXd::Constant(1, value)); });
+    };
+    EXPECT_EQ(message(-1.0), concat(name, " is -1; it must be ≥ 0"));
+    EXPECT_EQ(message(-1e-9), concat(name, " is -1e-09; it must be ≥ 0"));
+    EXPECT_EQ(message(0.0), "");
+    VectorXd relaxed = VectorXd::Constant(1, -1e-9);  // as an optimiser's bound is
+    round_into_range(set, relaxed);
+    EXPECT_EQ(relaxed[0], 0.0);
+    relaxed[0] = -1e-3;
+    round_into_range(set, relaxed);
+    EXPECT_EQ(relaxed[0], -1e-3);
+  }
+}
+
 TEST(ApplyParameters, RefusesContactNumbersThatCannotBe) {
   const Model model = resizable();
   const auto message = [&model](const std::string& name, double value) {
     auto mechanism = nominal_mechanism<double>(model);
     return message_of<InvalidInput>([&] {
-      apply_parameters<double>(model, ParameterSet::named(model, {name}),
-                               VectorXd::Constant(1, value), mechanism);
+      const ParameterSet set = ParameterSet::named(model, {name});
+      require_in_range(set, VectorXd::Constant(1, value));
+      apply_parameters<double>(model, set, VectorXd::Constant(1, value), mechanism);
     });
   };
   for (const char* name : {"kn", "kt", "mu", "damping"}) {

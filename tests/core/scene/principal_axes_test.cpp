@@ -40,13 +40,5 @@ TEST(SymmetricMatrix, TakesItsUpperTriangleByRows) {
   EXPECT_THROW(static_cast<void>(symmetric_matrix({1.0, 2.0, 3.0})), InvalidInput);
 }
 
-TEST(PhysicalMoments, AreThoseOfABody) {
-  EXPECT_TRUE(are_physical_moments({1.0, 1.0, 1.0}));
-  EXPECT_TRUE(are_physical_moments({0.1, 0.8, 0.7}));  // flat, but for rounding
-  EXPECT_FALSE(are_physical_moments({1.0, 1.0, 2.1}));
-  EXPECT_FALSE(are_physical_moments({0.0, 1.0, 1.0}));
-  EXPECT_FALSE(are_physical_moments({-1.0, 1.0, 1.0}));
-}
-
 }  // namespace
 }  // namespace hbar::scene

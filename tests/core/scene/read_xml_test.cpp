@@ -88,10 +88,10 @@ TEST(ReadScene, DefaultsFillWhatIsNotSaid) {
 }
 
 TEST(ReadScene, NoticesAMissingGroundAndDampingWithoutLawOnce) {
-  const Scene scene =
-      read_scene_text(scene_with_section("\n<contact><ground_contact body=\"b\" damping=\"1\"/>\n"
-                                         "<ground_contact body=\"d\" damping=\"1\"/></contact> f"),
-                      "a.xml");
+  const Scene scene = read_scene_text(
+      scene_with_section("\n<contact><ground_contact body=\"b\" kn=\"1\" damping=\"1\"/>\n"
+                         "<ground_contact body=\"d\" kn=\"1\" damping=\"1\"/></contact> f"),
+      "a.xml");
   EXPECT_EQ(scene.notices,
             (std::vector<std::string>{
                 "a.xml:4: <redmax>: the text \"f\" has no effect",
@@ -102,10 +102,10 @@ TEST(ReadScene, NoticesAMissingGroundAndDampingWithoutLawOnce) {
 
 TEST(ReadScene, HasNoNoticeOfASceneThatSaysItAll) {
   const Scene scene = read_scene_text(
-      scene_with_section("<ground/><contact><ground_contact body=\"b\" damping=\"1\" "
+      scene_with_section("<ground/><contact><ground_contact body=\"b\" kn=\"1\" damping=\"1\" "
                          "law=\"document\"/><general_primitive_contact general_body=\"d\" "
-                         "primitive_body=\"b\" damping=\"1\"/></contact><sensor><tactile "
-                         "body=\"b\" type=\"abstract\" spec=\"s.txt\"/></sensor>"),
+                         "primitive_body=\"b\" kn=\"1\" damping=\"1\"/></contact><sensor><tactile "
+                         "body=\"b\" type=\"abstract\" kn=\"1\" spec=\"s.txt\"/></sensor>"),
       "a.xml");
   EXPECT_TRUE(scene.notices.empty()) << scene.notices.front();
 }
