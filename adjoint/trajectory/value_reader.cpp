@@ -44,11 +44,13 @@ std::vector<std::vector<ContactSummary>> ValueReader::contact_history(
   require_trajectory_of(horizon_, trajectory);
   const Model& model = horizon_.model();
   std::vector<std::vector<ContactSummary>> out;
+  out.reserve(static_cast<std::size_t>(trajectory.step_count()) + 1);
   for (int k = 0; k <= trajectory.step_count(); ++k) {
     compute_motion<double>(model.tree(), *trajectory.mechanism, trajectory.q_at_step(k),
                            trajectory.qdot_at_step(k), none_, motion_);
     contacts_.evaluate(*trajectory.mechanism, motion_);
     out.emplace_back();
+    out.back().reserve(static_cast<std::size_t>(model.contact_count()));
     for (int i = 0; i < model.contact_count(); ++i) {
       out.back().push_back(contacts_.summary(i));
     }

@@ -10,6 +10,7 @@
 #include "hbar/core/files/numbers.h"
 #include "hbar/core/files/text_file.h"
 #include "labels.h"
+#include "results_memory.h"
 
 namespace hbar::tool {
 
@@ -111,6 +112,7 @@ void set_state(const std::optional<std::vector<double>>& given, std::string_view
 LoadedProblem load(const Arguments& arguments) {
   try {
     LoadedProblem loaded = load_problem(arguments.scene, arguments.load);
+    require_memory(arguments, loaded);
     Inputs& inputs = loaded.problem.inputs;
     const Model& model = loaded.problem.horizon.model();
     set_state(arguments.q0, "--q0", model, inputs.q0);
