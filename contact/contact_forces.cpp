@@ -5,9 +5,13 @@
 namespace hbar {
 namespace {
 
-/// Coordinates above and of a node.
+/// Coordinates above and of a node, ascending.
 std::vector<CoordinateRange> path_of(const Tree& tree, int node) {
-  std::vector<CoordinateRange> path = tree.ancestors(node);
+  std::vector<CoordinateRange> path;
+  for (const CoordinateRange& above : tree.ancestors(node)) {
+    path.push_back(above);
+  }
+  std::reverse(path.begin(), path.end());
   const CoordinateRange own = tree.node(node).coordinates;
   if (own.begin != own.end) {
     path.push_back(own);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hbar/adjoint/stage/parameter_derivatives.h"
+#include "hbar/core/base/stop_flag.h"
 #include "hbar/core/model/drives.h"
 
 namespace hbar {
@@ -77,6 +78,8 @@ void BackwardSweep<S>::run(const SweptTrajectory<S>& at, const SweptWeights<S>& 
   }
   int k = timeline.step_count();
   for (int s = timeline.last_stage(); s > 0; --s) {
+    require_running(horizon_.options().stop, "backward sweep interrupted at stage ", s, " of ",
+                    timeline.last_stage());
     set_point(at, s);
     stage_.linearize(at.applied.mechanism, point_, g_);
     if (s == timeline.step_end(k)) {

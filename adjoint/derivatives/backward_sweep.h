@@ -45,6 +45,8 @@ class BackwardSweep {
   explicit BackwardSweep(Horizon horizon);
 
   /// Runs the sweep; the accessors below then give the results.
+  ///
+  /// @throws Interrupted if the horizon's stop flag is set before a stage
   void run(const SweptTrajectory<S>& at, const SweptWeights<S>& weights, const SolveBlock& solve);
 
   // d(weights·values) by each input, after run().

@@ -14,6 +14,7 @@
 #include "hbar/adjoint/derivatives/tangent.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
+#include "hbar/core/base/stop_flag.h"
 
 namespace hbar {
 namespace {
@@ -74,7 +75,8 @@ class Prober {
   Prober(const Problem& problem, const GradientCheckOptions& options)
       : problem_(problem),
         options_(options),
-        horizon_(tightened(problem.horizon)),
+        horizon_(tightened(problem.horizon, true)),
+        probing_(tightened(problem.horizon, false)),
         pieces_(horizon_),
         random_(options.seed) {
     trajectory_ = simulate(horizon_, problem.inputs).trajectory();
@@ -115,8 +117,10 @@ class Prober {
   }
 
  private:
-  static Horizon tightened(const Horizon& horizon) {
+  /// Factors are for the adjoint of the nominal trajectory, not for those of which Ψ is read.
+  static Horizon tightened(const Horizon& horizon, bool with_factors) {
     SimulationOptions options = horizon.options();
+    options.keep_factors = options.keep_factors && with_factors;
     options.newton.rtol = std::min(options.newton.rtol, 1e-13);
     return horizon.with(options);
   }
@@ -127,11 +131,12 @@ class Prober {
     if ((x.array() < lower_.array()).any() || (x.array() > upper_.array()).any()) {
       return std::nullopt;
     }
-    const Rollout rollout = simulate(horizon_, unflatten(problem_.inputs, x));
-    if (!rollout.converged()) {
+    require_running(horizon_.options().stop, "gradient check interrupted");
+    const Rollout rollout = simulate(probing_, unflatten(problem_.inputs, x));
+    if (rollout.report().status == RolloutStatus::kStepFailed) {
       return std::nullopt;
     }
-    const TrajectoryValues values = read_values(horizon_, rollout.trajectory());
+    const TrajectoryValues values = read_values(probing_, rollout.trajectory());
     if (pieces_.read(rollout.trajectory(), values) != piece_) {
       return std::nullopt;
     }
@@ -278,6 +283,7 @@ class Prober {
   const Problem& problem_;
   const GradientCheckOptions& options_;
   Horizon horizon_;
+  Horizon probing_;  // the same, keeping no factors
   SmoothPieceReader pieces_;
   std::mt19937 random_;
   double value_ = 0.0;

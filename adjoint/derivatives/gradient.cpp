@@ -110,9 +110,12 @@ Gradient AdjointSweep::pull_back(const Trajectory& trajectory, const TrajectoryP
 }
 
 Gradient AdjointSweep::gradient(const Trajectory& trajectory, const Objective& objective) {
-  const TrajectoryValues values = work_->reader.values(trajectory);
-  Gradient out = pull_back(trajectory, objective.partials(values));
-  out.value = objective.value(values);
+  TrajectoryValues values = work_->reader.values(trajectory);
+  const TrajectoryPartials partials = objective.partials(values);
+  const double value = objective.value(values);
+  values = {};  // they are as large as the partials
+  Gradient out = pull_back(trajectory, partials);
+  out.value = value;
   return out;
 }
 

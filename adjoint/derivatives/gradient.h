@@ -36,6 +36,7 @@ class AdjointSweep {
   /// @param trajectory  complete, of this horizon
   /// @throws InvalidInput for a trajectory of another horizon, or a part of one
   /// @throws NumericalFailure if a stage's block is singular or its residual stays above 1e-11
+  /// @throws Interrupted if the horizon's stop flag is set before a stage
   [[nodiscard]] Gradient gradient(const Trajectory& trajectory, const Objective& objective);
 
   /// The same from given partials (the value is left at 0).

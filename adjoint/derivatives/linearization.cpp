@@ -7,6 +7,7 @@
 #include "hbar/adjoint/trajectory/flat_stencil.h"
 #include "hbar/adjoint/trajectory/history.h"
 #include "hbar/adjoint/trajectory/horizon.h"
+#include "hbar/core/base/stop_flag.h"
 #include "hbar/core/model/drives.h"
 #include "hbar/core/parameters/parameter_kinds.h"
 
@@ -245,6 +246,8 @@ const Linearization& Linearizer::linearize(const Trajectory& trajectory) {
     w.lay_out(trajectory.timeline);
   }
   for (int s = 1; s < trajectory.timeline.stage_count(); ++s) {
+    require_running(w.horizon.options().stop, "linearisation interrupted at stage ", s, " of ",
+                    trajectory.timeline.last_stage());
     w.fill_stage(trajectory, s);
   }
   return w.out;

@@ -8,6 +8,7 @@
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/dual_vectors.h"
 #include "hbar/core/base/error.h"
+#include "hbar/core/base/stop_flag.h"
 
 namespace hbar {
 namespace {
@@ -95,6 +96,8 @@ void SecondOrderSweep::Workspace::factorize() {
   const int last = trajectory_.timeline.last_stage();
   factors.resize(static_cast<std::size_t>(last) + 1);
   for (int s = 1; s <= last; ++s) {
+    require_running(horizon.options().stop, "second order: factorisation interrupted at stage ", s,
+                    " of ", last);
     history.set_point(trajectory_, s, point);
     stage.linearize(*trajectory_.mechanism, point, g);
     stage.newton_matrix(block);
@@ -174,12 +177,15 @@ const ValueTangent& SecondOrderSweep::push_forward(const Inputs& direction) {
   require_shape(direction, trajectory.inputs);
   w.p_d = dual_vector(trajectory.inputs.p, direction.p);
   apply_parameters<Dual>(w.horizon.model(), w.horizon.parameters(), w.p_d, w.mechanism_d);
+  w.has_direction = false;
   w.u_d = dual_matrix(trajectory.inputs.u, direction.u);
   w.q_d = trajectory.q.cast<Dual>();
   w.qdot_d = trajectory.qdot.cast<Dual>();
   w.q_d.col(0) = dual_vector(trajectory.q.col(0), direction.q0);
   w.qdot_d.col(0) = dual_vector(trajectory.qdot.col(0), direction.qdot0);
   for (int s = 1; s <= trajectory.timeline.last_stage(); ++s) {
+    require_running(w.horizon.options().stop, "second order: forward sweep interrupted at stage ",
+                    s, " of ", trajectory.timeline.last_stage());
     w.set_stage(s);
     w.stage_d.residual(w.mechanism_d, w.point_d, w.g_d);
     w.delta = slopes_of(w.g_d);

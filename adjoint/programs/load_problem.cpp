@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <unordered_set>
 #include <utility>
 
 #include "hbar/adjoint/terms/objective_terms.h"
@@ -26,6 +27,8 @@ SimulationOptions simulation_options(const scene::Description& scene, const Load
   out.newton.rtol = scene.solver_options.rtol.value_or(out.newton.rtol);
   out.newton.max_iter = scene.solver_options.max_iter;
   out.newton.max_ls = scene.solver_options.max_ls;
+  out.keep_factors = options.keep_factors;
+  out.max_memory = options.max_memory.value_or(out.max_memory);
   out.stop = options.stop;
   return out;
 }
@@ -106,10 +109,11 @@ std::vector<std::string> files_of(const scene::Body& body) {
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& path,
                                             const scene::Scene& scene) {
   std::vector<std::filesystem::path> files = {path};
-  const auto add = [&files, &scene](const std::string& name) {
-    const std::filesystem::path file = scene.find(name);
-    if (std::find(files.begin(), files.end(), file) == files.end()) {
-      files.push_back(file);
+  std::unordered_set<std::string> known = {path.native()};
+  const auto add = [&](const std::string& name) {
+    std::filesystem::path file = scene.find(name);
+    if (known.insert(file.native()).second) {
+      files.push_back(std::move(file));
     }
   };
   for (const scene::Robot& robot : scene.description.robots) {
@@ -130,7 +134,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& path,
 
 LoadedProblem load_problem(const std::filesystem::path& path, const LoadOptions& options) {
   scene::Scene scene = scene::read_scene(path);
-  Model model = scene::build_model(scene, &scene.notices);
+  Model model = scene::build_model(scene, &scene.notices, options.stop);
   if (model.dof() == 0) {
     throw InvalidInput(concat(scene.file, ": no joint has a coordinate: there is nothing to move"));
   }

@@ -35,7 +35,9 @@ struct LoadOptions {
   std::vector<std::string> parameter_names;  ///< as ParameterSet::named; kNamed only
   /// Else kVariables if the scene has an end effector, and kFinalPosition if it has none.
   std::optional<ObjectiveChoice> objective;
-  const std::atomic<bool>* stop = nullptr;  ///< see SimulationOptions
+  bool keep_factors = true;                 ///< see SimulationOptions
+  std::optional<double> max_memory;         ///< see SimulationOptions; else its default
+  const std::atomic<bool>* stop = nullptr;  ///< see SimulationOptions; it ends loading, too
 };
 
 /// A problem made from a scene file, at nominal inputs: controls and initial state zero.
@@ -59,6 +61,7 @@ class InvalidOption : public InvalidInput {
 /// @throws IoError        if the scene or a file it names cannot be read
 /// @throws InvalidInput   if the scene is invalid; the message begins with its file name
 /// @throws InvalidOption  if the options are invalid, or do not suit the scene
+/// @throws Interrupted    if options.stop is set on the way
 [[nodiscard]] LoadedProblem load_problem(const std::filesystem::path& scene,
                                          const LoadOptions& options = {});
 

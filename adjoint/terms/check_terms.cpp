@@ -114,9 +114,9 @@ class TermChecker {
     MatrixXd error;
   };
 
-  /// With respect to number i in units of its scale: central, extrapolated once. Terms that saturate
-  /// or grow fast need smaller steps than others: for each entry, the step counts whose result
-  /// changes least with the next.
+  /// With respect to number i in units of its scale: central, extrapolated once. Terms that
+  /// saturate or grow fast need smaller steps than others: for each entry, the step counts whose
+  /// result changes least with the next.
   template <typename Function>
   [[nodiscard]] Difference difference(Index i, const Function& f) const {
     constexpr int kSteps = 7;
@@ -137,8 +137,8 @@ class TermChecker {
     MatrixXd last = extrapolated(step);
     Difference best{last, MatrixXd::Constant(last.rows(), last.cols(),
                                              std::numeric_limits<double>::infinity())};
-    for (int k = 1; k < kSteps && !(best.error.rowwise().maxCoeff().cwiseQuotient(norms_).maxCoeff() <=
-                                    kEnough);
+    for (int k = 1; k < kSteps &&
+                    !(best.error.rowwise().maxCoeff().cwiseQuotient(norms_).maxCoeff() <= kEnough);
          ++k) {
       step /= kRatio;
       const MatrixXd next = extrapolated(step);
@@ -219,7 +219,8 @@ class TermChecker {
   }
 
   /// The order of a remainder where ε is smallest and rounding does not count yet; infinite if it
-  /// always does. Where the remainder vanishes in rounding within a step, it fell by so much at least.
+  /// always does. Where the remainder vanishes in rounding within a step, it fell by so much at
+  /// least.
   template <typename Remainder>
   [[nodiscard]] static double slope_of(const Remainder& remainder, double rounding) {
     constexpr int kSteps = 13;  // half decades from 1e-2

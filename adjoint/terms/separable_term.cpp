@@ -67,9 +67,11 @@ std::vector<int> rows_of(const StepSum& sum, const TrajectoryValues& values) {
   return rows;
 }
 
-/// Adds the relevant numbers of a sum.
-void add_summands(const std::string& name, const StepSum& sum, const TrajectoryValues& values,
-                  std::vector<Summand>& out) {
+/// Visits the relevant numbers of a sum, one after the other: a list of them would be several times
+/// as large as the values.
+template <typename Visit>
+void for_each_summand(const std::string& name, const StepSum& sum, const TrajectoryValues& values,
+                      const Visit& visit) {
   const std::vector<int> rows = rows_of(sum, values);
   const auto last = static_cast<int>(field_columns(values, sum.field)) - 1;
   // What happens at k = 0 is given, not caused; the controls of step 1 are u_0.
@@ -86,7 +88,7 @@ void add_summands(const std::string& name, const StepSum& sum, const TrajectoryV
                                 ? 0.0
                                 : sum.target(static_cast<Eigen::Index>(r),
                                              sum.target.cols() == 1 ? 0 : column - first);
-      out.push_back({{sum.field, column, rows[r]}, weight * h, target});
+      visit(Summand{{sum.field, column, rows[r]}, weight * h, target});
     }
   }
 }
@@ -101,25 +103,23 @@ class SeparableTerm final : public ObjectiveTerm {
 
   [[nodiscard]] double value(const TrajectoryValues& values) const override {
     double total = 0.0;
-    for (const Summand& s : summands(values)) {
+    for_each(values, [&](const Summand& s) {
       total += s.weight * phi_(value_at(values, s.place) - s.target).value;
-    }
+    });
     return total;
   }
 
   void add_partials(const TrajectoryValues& values, TrajectoryPartials& partials) const override {
-    for (const Summand& s : summands(values)) {
+    for_each(values, [&](const Summand& s) {
       partial_at(partials, s.place) += s.weight * phi_(value_at(values, s.place) - s.target).slope;
-    }
+    });
   }
 
   [[nodiscard]] std::vector<SecondPlace> second_places(
       const TrajectoryValues& shape) const override {
     std::vector<SecondPlace> out;
     if (!linear_) {
-      for (const Summand& s : summands(shape)) {
-        out.push_back({0, s.place, s.place});
-      }
+      for_each(shape, [&](const Summand& s) { out.push_back({0, s.place, s.place}); });
     }
     return out;
   }
@@ -128,19 +128,18 @@ class SeparableTerm final : public ObjectiveTerm {
                        Eigen::Ref<Eigen::VectorXd> second) const override {
     Eigen::Index at = 0;
     if (!linear_) {
-      for (const Summand& s : summands(values)) {
+      for_each(values, [&](const Summand& s) {
         second[at++] = s.weight * phi_(value_at(values, s.place) - s.target).curvature;
-      }
+      });
     }
   }
 
  private:
-  [[nodiscard]] std::vector<Summand> summands(const TrajectoryValues& values) const {
-    std::vector<Summand> out;
+  template <typename Visit>
+  void for_each(const TrajectoryValues& values, const Visit& visit) const {
     for (const StepSum& sum : sums_) {
-      add_summands(name_, sum, values, out);
+      for_each_summand(name_, sum, values, visit);
     }
-    return out;
   }
 
   std::string name_;

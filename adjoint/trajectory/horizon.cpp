@@ -5,16 +5,12 @@
 #include <utility>
 
 #include "hbar/adjoint/trajectory/integrator.h"
+#include "hbar/adjoint/trajectory/memory_estimate.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/base/nearest_name.h"
 
 namespace hbar {
 namespace {
-
-double bytes_per_stage(const Model& model, bool with_factors) {
-  const double n = model.dof();
-  return 8.0 * (4.0 * n + model.control_count() + 16.0 + (with_factors ? n * n + n : 0.0));
-}
 
 void check_options(const Model& model, const SimulationOptions& options) {
   if (!(options.h > 0.0) || !std::isfinite(options.h)) {
@@ -43,12 +39,6 @@ void check_options(const Model& model, const SimulationOptions& options) {
           concat("restart at step ", step, "; there are steps 0 to ", options.steps - 1));
     }
   }
-  const double bytes = options.steps * bytes_per_stage(model, false);
-  if (bytes > options.max_memory) {
-    throw InvalidInput(concat(options.steps, " steps of ", model.dof(), " coordinates take about ",
-                              bytes * 1e-9, " GB; the limit is ", options.max_memory * 1e-9,
-                              " GB: take fewer steps or raise max_memory"));
-  }
   if (model.dof() == 0) {
     throw InvalidInput("the model has no coordinate: every joint is fixed");
   }
@@ -70,7 +60,18 @@ void check_input(const Eigen::MatrixXd& value, std::string_view name, Eigen::Ind
   }
 }
 
+MemoryCounts counts_of(const SimulationOptions& options, std::size_t measured, int parameters) {
+  return {options.integrator, options.steps, static_cast<int>(options.restarts.size()),
+          static_cast<int>(measured), parameters};
+}
+
 }  // namespace
+
+MemoryEstimate estimate_memory(const Horizon& horizon) {
+  return estimate_memory(
+      horizon.model(),
+      counts_of(horizon.options(), horizon.measured_names().size(), horizon.parameters().size()));
+}
 
 Horizon::Horizon(Model model, ParameterSet parameters, SimulationOptions options)
     : Horizon(std::make_shared<const Model>(std::move(model)), std::move(parameters),
@@ -99,9 +100,10 @@ Horizon::Horizon(std::shared_ptr<const Model> model, ParameterSet parameters,
     const std::vector<std::string> rows = row_names(*data.model, measurement);
     data.measured_names.insert(data.measured_names.end(), rows.begin(), rows.end());
   }
-  const double stages = 2.0 * data.options.steps;
-  data.keeps_factors = data.options.keep_factors &&
-                       stages * bytes_per_stage(*data.model, true) <= data.options.max_memory;
+  const MemoryEstimate memory = estimate_memory(
+      *data.model, counts_of(data.options, data.measured_names.size(), data.parameters.size()));
+  require_memory(*data.model, data.options.steps, memory, data.options.max_memory);
+  data.keeps_factors = data.options.keep_factors && memory.total(true) <= data.options.max_memory;
   data_ = std::make_shared<const Data>(std::move(data));
 }
 

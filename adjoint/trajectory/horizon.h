@@ -30,10 +30,12 @@ struct SimulationOptions {
   solvers::NewtonOptions newton = {};
   /// Additional rows of TrajectoryValues::measured for objectives and constraints.
   std::vector<Measurement> measurements = {};
-  int max_halvings = 10;                    ///< of a step that does not converge; each is recorded
-  bool keep_factors = true;                 ///< for the adjoint; not kept if they exceed max_memory
-  double max_memory = 4e9;                  ///< bytes that a trajectory may take
-  const std::atomic<bool>* stop = nullptr;  ///< checked before each step
+  int max_halvings = 10;     ///< of a step that does not converge; each is recorded
+  bool keep_factors = true;  ///< for the adjoint; not kept if they exceed max_memory
+  double max_memory = 4e9;   ///< bytes that a simulation and its gradient may take, as estimated
+  /// Ends what runs on this horizon soon after it is set: a simulation before its next step, with a
+  /// report; derivatives, linearisations and checks before their next stage, with Interrupted.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 /// The set-up of a trajectory: a model, its free parameters, and how to simulate it. Everything

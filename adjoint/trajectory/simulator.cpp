@@ -8,12 +8,22 @@
 #include "hbar/adjoint/trajectory/integrator.h"
 #include "hbar/core/base/chart.h"
 #include "hbar/core/base/error.h"
+#include "hbar/core/base/stop_flag.h"
 
 namespace hbar {
 namespace {
 
 /// Largest angle by which a stage may turn a joint away from its prediction, rad.
 constexpr double kLargestTurn = 1.5;
+
+void require_complete(const RolloutReport& report) {
+  if (report.status == RolloutStatus::kInterrupted) {
+    throw Interrupted(report.message);
+  }
+  if (report.status != RolloutStatus::kConverged) {
+    throw NumericalFailure(report.message);
+  }
+}
 
 /// Whether a solution is so far from its prediction that it must be another root: with contact, a
 /// stage may have roots in which bodies have passed through each other.
@@ -52,16 +62,12 @@ void switch_charts(const Model& model, Trajectory& trajectory) {
 }  // namespace
 
 const Trajectory& Rollout::trajectory() const& {
-  if (!converged()) {
-    throw NumericalFailure(report_.message);
-  }
+  require_complete(report_);
   return trajectory_;
 }
 
 Trajectory Rollout::trajectory() && {
-  if (!converged()) {
-    throw NumericalFailure(report_.message);
-  }
+  require_complete(report_);
   return std::move(trajectory_);
 }
 
@@ -148,13 +154,18 @@ Rollout Simulator::rollout(const Inputs& inputs) {
   trajectory.qdot.resize(model.dof(), stages + 1);
   trajectory.q.col(0) = inputs.q0;
   trajectory.qdot.col(0) = inputs.qdot0;
+  trajectory.timeline.reserve(static_cast<int>(stages) + 1, options.steps);
+  trajectory.newton.reserve(static_cast<std::size_t>(stages) + 1);
   trajectory.newton.resize(1);
+  if (horizon_.keeps_factors()) {
+    trajectory.factors.reserve(static_cast<std::size_t>(stages) + 1);
+  }
   RolloutReport report;
   report.smallest_h = options.h;
   report.status = RolloutStatus::kConverged;
   switch_charts(model, trajectory);
   for (int step = 0; step < options.steps; ++step) {
-    if (options.stop != nullptr && options.stop->load(std::memory_order_relaxed)) {
+    if (is_set(options.stop)) {
       report.status = RolloutStatus::kInterrupted;
       report.message =
           concat("simulation interrupted after ", step, " of ", options.steps, " steps");

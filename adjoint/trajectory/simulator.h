@@ -32,6 +32,7 @@ class [[nodiscard]] Rollout {
   [[nodiscard]] const RolloutReport& report() const { return report_; }
   /// The complete trajectory.
   /// @throws NumericalFailure with the report's message if it is incomplete
+  /// @throws Interrupted      with it if that is because the stop flag was set
   [[nodiscard]] const Trajectory& trajectory() const&;
   [[nodiscard]] Trajectory trajectory() &&;
   /// The trajectory as far as it got, complete or not.

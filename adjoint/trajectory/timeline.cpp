@@ -6,6 +6,12 @@ namespace hbar {
 
 Timeline::Timeline() : stages_(1), step_ends_{0}, ends_{{0, 0.0}} {}
 
+void Timeline::reserve(int stages, int steps) {
+  stages_.reserve(static_cast<std::size_t>(stages));
+  ends_.reserve(static_cast<std::size_t>(stages));
+  step_ends_.reserve(static_cast<std::size_t>(steps) + 1);
+}
+
 void Timeline::append(const Integrator& integrator, int step, double h) {
   const std::size_t equal_steps = ends_.back().h == h ? 2 : 1;
   const Integrator& method = static_cast<std::size_t>(integrator.history) <= equal_steps

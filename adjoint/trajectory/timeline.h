@@ -36,6 +36,9 @@ class Timeline {
  public:
   Timeline();
 
+  /// Makes room for that many stages and steps, stage 0 included; more may follow.
+  void reserve(int stages, int steps);
+
   /// Appends the stages of one step, or of a part of one, with step size h. A method that needs
   /// more equal steps than there are is started by its starter.
   ///

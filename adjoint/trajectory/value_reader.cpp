@@ -43,6 +43,7 @@ std::vector<std::vector<ContactSummary>> ValueReader::contact_history(
     const Trajectory& trajectory) {
   require_trajectory_of(horizon_, trajectory);
   std::vector<std::vector<ContactSummary>> out;
+  out.reserve(static_cast<std::size_t>(trajectory.step_count()) + 1);
   for (int k = 0; k <= trajectory.step_count(); ++k) {
     out.push_back(
         contacts_at(*trajectory.mechanism, trajectory.q_at_step(k), trajectory.qdot_at_step(k)));
@@ -62,6 +63,7 @@ std::vector<ContactSummary> ValueReader::contacts_at(const Mechanism<double>& me
   compute_motion<double>(model.tree(), mechanism, q, qdot, none_, motion_);
   contacts_.evaluate(mechanism, motion_);
   std::vector<ContactSummary> out;
+  out.reserve(static_cast<std::size_t>(model.contact_count()));
   for (int i = 0; i < model.contact_count(); ++i) {
     out.push_back(contacts_.summary(i));
   }

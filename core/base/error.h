@@ -37,6 +37,13 @@ class NumericalFailure : public Error {
   using Error::Error;
 };
 
+/// A computation ended before its result was complete because its caller set the stop flag
+/// (stop_flag.h). The message says what ended and how far it had got.
+class Interrupted : public Error {
+ public:
+  using Error::Error;
+};
+
 namespace detail {
 
 /// What concat puts together: text, or a number as `operator<<` writes it. Borrows the text.

@@ -41,6 +41,9 @@ Columns<S>::Columns(const Tree& tree)
   rows_above_.setZero();
   rows_below_.setZero();
   for (int i = 0; i < tree.node_count(); ++i) {
+    if (tree.node(i).coordinates.begin == tree.node(i).coordinates.end) {
+      continue;  // a long chain of fixed joints is not climbed from each of them
+    }
     for (int above = i; above >= 0; above = tree.node(above).parent) {
       append(below_[static_cast<std::size_t>(above)], tree.node(i).coordinates);
     }

@@ -11,6 +11,7 @@
 
 #include "hbar/core/base/checksum.h"
 #include "hbar/core/base/error.h"
+#include "hbar/core/base/stop_flag.h"
 #include "hbar/core/geometry/triangle_distance.h"
 
 namespace hbar {
@@ -46,10 +47,12 @@ GridNodes place_nodes(const Eigen::AlignedBox3d& box, int cells) {
   return nodes;
 }
 
-/// Calls visit(i, j, k) for every node, or cell, of a grid; x runs fastest.
+/// Calls visit(i, j, k) for every node, or cell, of a grid; x runs fastest. Looks at `stop` before
+/// each plane.
 template <typename Visit>
-void for_each(const Eigen::Vector3i& count, const Visit& visit) {
+void for_each(const Eigen::Vector3i& count, const std::atomic<bool>* stop, const Visit& visit) {
   for (int k = 0; k < count.z(); ++k) {
+    require_running(stop, "distance grid interrupted at plane ", k + 1, " of ", count.z());
     for (int j = 0; j < count.y(); ++j) {
       for (int i = 0; i < count.x(); ++i) {
         visit(i, j, k);
@@ -58,12 +61,13 @@ void for_each(const Eigen::Vector3i& count, const Visit& visit) {
   }
 }
 
-double measure_error(const TriangleDistance& exact, const TricubicSpline& spline) {
+double measure_error(const TriangleDistance& exact, const TricubicSpline& spline,
+                     const std::atomic<bool>* stop) {
   const GridNodes& nodes = spline.nodes();
   const double near = kNear * nodes.spacing;
   double largest = 0.0;
   int hint = 0;
-  for_each(nodes.count.array() - 1, [&](int i, int j, int k) {
+  for_each(nodes.count.array() - 1, stop, [&](int i, int j, int k) {
     const Eigen::Vector3d x = nodes.point(i, j, k).array() + 0.5 * nodes.spacing;
     const double value = spline.value(x);
     if (std::abs(value) > near + nodes.spacing) {
@@ -142,22 +146,23 @@ class Reader {
 DistanceGrid::DistanceGrid(State state)
     : state_(std::move(state)), domain_(nodes().origin, nodes().last()) {}
 
-DistanceGrid::DistanceGrid(const TriangleMesh& mesh, int cells)
-    : DistanceGrid(build(mesh, cells)) {}
+DistanceGrid::DistanceGrid(const TriangleMesh& mesh, int cells, const std::atomic<bool>* stop)
+    : DistanceGrid(build(mesh, cells, stop)) {}
 
 DistanceGrid::DistanceGrid(std::string_view bytes) : DistanceGrid(read(bytes)) {}
 
-DistanceGrid::State DistanceGrid::build(const TriangleMesh& mesh, int cells) {
+DistanceGrid::State DistanceGrid::build(const TriangleMesh& mesh, int cells,
+                                        const std::atomic<bool>* stop) {
   const TriangleDistance exact(mesh);
   const GridNodes nodes = place_nodes(exact.box(), cells);
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(nodes.count.cast<std::int64_t>().prod()));
   int hint = 0;
-  for_each(nodes.count, [&](int i, int j, int k) {
+  for_each(nodes.count, stop, [&](int i, int j, int k) {
     values.push_back(exact.signed_distance(nodes.point(i, j, k), hint));
   });
   TricubicSpline spline = TricubicSpline::through(nodes, values);
-  const double max_error = measure_error(exact, spline);
+  const double max_error = measure_error(exact, spline, stop);
   return {std::move(spline), exact.box(), max_error};
 }
 
@@ -253,8 +258,8 @@ DistanceGrid::State DistanceGrid::read(std::string_view bytes) {
 }
 
 std::shared_ptr<const DistanceField> mesh_distance(const TriangleMesh& mesh_in_body_frame,
-                                                   int cells) {
-  return std::make_shared<DistanceGrid>(mesh_in_body_frame, cells);
+                                                   int cells, const std::atomic<bool>* stop) {
+  return std::make_shared<DistanceGrid>(mesh_in_body_frame, cells, stop);
 }
 
 }  // namespace hbar

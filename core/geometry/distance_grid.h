@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <atomic>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -29,8 +30,11 @@ class DistanceGrid final : public DistanceField {
  public:
   /// @param mesh   a closed surface in the body's frame, length, see TriangleDistance
   /// @param cells  along the longest side of the mesh's bounding box
+  /// @param stop   ends the computation when it is set; may be null
   /// @throws InvalidInput as check_solid does, or if there are too few or too many cells
-  explicit DistanceGrid(const TriangleMesh& mesh, int cells = kDistanceCells);
+  /// @throws Interrupted  if `stop` is set before a plane of nodes or cells
+  explicit DistanceGrid(const TriangleMesh& mesh, int cells = kDistanceCells,
+                        const std::atomic<bool>* stop = nullptr);
 
   /// Restores a grid from the result of bytes().
   ///
@@ -67,7 +71,7 @@ class DistanceGrid final : public DistanceField {
     double max_error;
   };
   explicit DistanceGrid(State state);
-  static State build(const TriangleMesh& mesh, int cells);
+  static State build(const TriangleMesh& mesh, int cells, const std::atomic<bool>* stop);
   static State read(std::string_view bytes);
 
   State state_;
@@ -78,8 +82,10 @@ class DistanceGrid final : public DistanceField {
 ///
 /// @param mesh_in_body_frame  a closed surface, length
 /// @param cells               along the longest side of its bounding box
-/// @throws InvalidInput as DistanceGrid does
+/// @param stop                ends the computation when it is set; may be null
+/// @throws InvalidInput, Interrupted  as DistanceGrid does
 [[nodiscard]] std::shared_ptr<const DistanceField> mesh_distance(
-    const TriangleMesh& mesh_in_body_frame, int cells = kDistanceCells);
+    const TriangleMesh& mesh_in_body_frame, int cells = kDistanceCells,
+    const std::atomic<bool>* stop = nullptr);
 
 }  // namespace hbar

@@ -30,6 +30,25 @@ double along(double length, int i, int count) {
   return (static_cast<double>(i) / (count - 1) - 0.5) * length;
 }
 
+double count_of(const NoShape&, const SurfaceResolution&) { return 0.0; }
+double count_of(const Cuboid&, const SurfaceResolution& resolution) {
+  const auto [nx, ny, nz] = resolution.cuboid;
+  const double all = static_cast<double>(nx) * ny * nz;
+  return all - std::max(nx - 2.0, 0.0) * std::max(ny - 2.0, 0.0) * std::max(nz - 2.0, 0.0);
+}
+double count_of(const Sphere&, const SurfaceResolution& resolution) {
+  const auto [rings, around] = resolution.sphere;
+  return rings == 0 && around == 0 ? 0.0 : 2.0 + static_cast<double>(rings) * around;
+}
+double count_of(const Cylinder&, const SurfaceResolution& resolution) {
+  const auto [angles, radii] = resolution.cylinder;
+  return 2.0 + 2.0 * static_cast<double>(angles) * radii;
+}
+double count_of(const Capsule&, const SurfaceResolution& resolution) {
+  const auto [rings, around] = resolution.capsule;
+  return 2.0 + static_cast<double>(rings) * around;
+}
+
 Points sample(const NoShape&, const SurfaceResolution&) { return {}; }
 
 Points sample(const Cuboid& cuboid, const SurfaceResolution& resolution) {
@@ -41,10 +60,8 @@ Points sample(const Cuboid& cuboid, const SurfaceResolution& resolution) {
   Points points;
   for (int i = 0; i < nx; ++i) {
     for (int j = 0; j < ny; ++j) {
-      for (int k = 0; k < nz; ++k) {
-        if (!is_end(i, nx) && !is_end(j, ny) && !is_end(k, nz)) {
-          continue;
-        }
+      const bool inside = !is_end(i, nx) && !is_end(j, ny);
+      for (int k = 0; k < nz; k += inside ? nz - 1 : 1) {
         points.emplace_back(along(cuboid.size.x(), i, nx), along(cuboid.size.y(), j, ny),
                             along(cuboid.size.z(), k, nz));
       }
@@ -127,7 +144,16 @@ Eigen::Vector3d rate(const Capsule& capsule, const Eigen::Vector3d& C, int k) {
 
 }  // namespace
 
+double surface_point_count(const Shape& shape, const SurfaceResolution& resolution) {
+  return std::visit([&](const auto& solid) { return count_of(solid, resolution); }, shape);
+}
+
 Eigen::Matrix3Xd surface_points(const Shape& shape, const SurfaceResolution& resolution) {
+  const double count = surface_point_count(shape, resolution);
+  if (count > kMaxContactPoints) {
+    throw InvalidInput(concat("surface_points: the resolution gives ", count,
+                              " points; a body has at most ", kMaxContactPoints));
+  }
   const Points points =
       std::visit([&](const auto& solid) { return sample(solid, resolution); }, shape);
   Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(points.size()));

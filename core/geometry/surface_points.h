@@ -14,11 +14,17 @@ struct SurfaceResolution {
   std::array<int, 2> capsule = {5, 4};    ///< rings ≥ 2, points of each ≥ 1
 };
 
+/// The most contact points that a body may have; each is tested in every contact of its body.
+inline constexpr int kMaxContactPoints = 1'000'000;
+
+/// How many points surface_points makes at a resolution, or would make if it were not refused.
+[[nodiscard]] double surface_point_count(const Shape& shape, const SurfaceResolution& resolution);
+
 /// Contact points on the surface of a solid, in the body frame (doc/scene_format.md gives their
 /// order).
 ///
 /// @returns  [3 x points]; no columns for NoShape and for a sphere of resolution 0 0
-/// @throws InvalidInput for a resolution that is too small
+/// @throws InvalidInput for a resolution that is too small, or gives more than kMaxContactPoints
 [[nodiscard]] Eigen::Matrix3Xd surface_points(const Shape& shape,
                                               const SurfaceResolution& resolution = {});
 

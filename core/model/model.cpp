@@ -1,20 +1,23 @@
 #include "hbar/core/model/model.h"
 
+#include <algorithm>
+
 #include "hbar/core/base/error.h"
 #include "hbar/core/base/nearest_name.h"
 
 namespace hbar {
 namespace {
 
+/// @throws InvalidInput naming the nearest name if there is none
 template <typename Item, typename NameOf>
-int find_by_name(const std::vector<Item>& items, std::string_view name, std::string_view what,
-                 const NameOf& name_of) {
+int find_by_name(const NameIndex& index, const std::vector<Item>& items, std::string_view name,
+                 std::string_view what, const NameOf& name_of) {
+  if (const std::optional<int> found = index.find(name)) {
+    return *found;
+  }
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (name_of(items[i]) == name) {
-      return static_cast<int>(i);
-    }
-    names.push_back(name_of(items[i]));
+  for (const Item& item : items) {
+    names.push_back(name_of(item));
   }
   throw InvalidInput(
       concat("there is no ", what, " '", name, "'; ", unknown_name_hint(name, names)));
@@ -42,28 +45,30 @@ std::string Model::coordinate_name(int i) const {
 }
 
 std::string Model::control_name(int i) const {
-  for (std::size_t m = motors_.size(); m-- > 0;) {
-    if (first_control_[m] <= i) {
-      return coordinate_name(coordinates_of_link(motors_[m].link).begin + i - first_control_[m]);
-    }
+  const auto next = std::upper_bound(first_control_.begin(), first_control_.end(), i);
+  if (i < control_count_ && next != first_control_.begin()) {
+    const auto m = static_cast<std::size_t>(next - first_control_.begin()) - 1;
+    return coordinate_name(coordinates_of_link(motors_[m].link).begin + i - first_control_[m]);
   }
   throw InvalidInput(concat("there is no control ", i, "; the model has ", control_count_));
 }
 
 int Model::find_link(std::string_view link) const {
-  return find_by_name(links_, link, "link", [](const Link& l) { return l.name; });
+  return find_by_name(link_names_, links_, link, "link", [](const Link& l) { return l.name; });
 }
 
 int Model::find_joint(std::string_view joint) const {
-  return find_by_name(links_, joint, "joint", [](const Link& l) { return l.joint.name; });
+  return find_by_name(joint_names_, links_, joint, "joint",
+                      [](const Link& l) { return l.joint.name; });
 }
 
 int Model::find_body(std::string_view body) const {
-  return find_by_name(links_, body, "body", [](const Link& l) { return l.body.name; });
+  return find_by_name(body_names_, links_, body, "body", [](const Link& l) { return l.body.name; });
 }
 
 int Model::find_contact(std::string_view contact) const {
-  return find_by_name(contacts_, contact, "contact", [](const Contact& c) { return c.name; });
+  return find_by_name(contact_names_, contacts_, contact, "contact",
+                      [](const Contact& c) { return c.name; });
 }
 
 bool touches_as_ball(const Model& model, const Contact& contact) {

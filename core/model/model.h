@@ -10,6 +10,7 @@
 #include "hbar/core/geometry/shape.h"
 #include "hbar/core/model/contact.h"
 #include "hbar/core/model/joint.h"
+#include "hbar/core/model/name_index.h"
 #include "hbar/core/model/tree.h"
 
 namespace hbar {
@@ -122,6 +123,11 @@ class Model {
     return point_clusters_[static_cast<std::size_t>(link)];
   }
 
+  /// Whether a contact tests the points of a link's body.
+  [[nodiscard]] bool is_tested(int link) const {
+    return is_tested_[static_cast<std::size_t>(link)] != 0;
+  }
+
   /// The last node of a link's joint: the one that carries its body.
   [[nodiscard]] int node_of_link(int link) const {
     return node_of_link_[static_cast<std::size_t>(link)];
@@ -159,6 +165,7 @@ class Model {
   Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
   std::vector<Link> links_;
   std::vector<PointClusters> point_clusters_;  // per link
+  std::vector<char> is_tested_;                // per link
   std::vector<Motor> motors_;
   std::vector<EndEffector> end_effectors_;
   std::vector<Contact> contacts_;
@@ -166,6 +173,10 @@ class Model {
   Tree tree_;
   std::vector<int> node_of_link_;
   std::vector<int> first_control_;
+  NameIndex link_names_;
+  NameIndex joint_names_;
+  NameIndex body_names_;
+  NameIndex contact_names_;
   int control_count_ = 0;
   int tactile_count_ = 0;
 };

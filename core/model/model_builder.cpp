@@ -176,21 +176,24 @@ int ModelBuilder::add_link(int parent, Joint joint, Body body, std::string name,
   if (parent != -1) {
     check_link_index(parent, concat("link '", name, "', parent"));
   }
-  require(!link_names_.contains(name), concat("link '", name, "': this name is taken"));
-  require(!joint_names_.contains(joint.name),
+  require(!model_.link_names_.contains(name), concat("link '", name, "': this name is taken"));
+  require(!model_.joint_names_.contains(joint.name),
           concat("joint '", joint.name, "': this name is taken"));
-  require(!body_names_.contains(body.name), concat("body '", body.name, "': this name is taken"));
+  require(!model_.body_names_.contains(body.name),
+          concat("body '", body.name, "': this name is taken"));
   require(design_mask <= kMaskAll, concat("link '", name, "': design mask is ", design_mask,
                                           "; it must be a sum of 1, 2, 4, 8, 16, 32"));
   check_joint(joint);
   check_body(body);
-  link_names_.insert(name);
-  joint_names_.insert(joint.name);
-  body_names_.insert(body.name);
+  model_.link_names_.add(name);
+  model_.joint_names_.add(joint.name);
+  model_.body_names_.add(body.name);
   const int index = model_.link_count();
   const int parent_node = parent == -1 ? -1 : model_.node_of_link(parent);
   model_.node_of_link_.push_back(model_.tree_.add_joint(joint.kind, parent_node, index));
   model_.point_clusters_.push_back(cluster_points(body.contact_points));
+  model_.is_tested_.push_back(0);
+  rest_poses_.push_back(parent == -1 ? joint.X_PJ : rest_pose(parent) * joint.X_PJ);
   model_.links_.push_back(
       {std::move(name), parent, std::move(joint), std::move(body), design_mask});
   return index;
@@ -202,9 +205,7 @@ int ModelBuilder::add_motor(const Motor& motor) {
   const std::string where = concat("motor on joint '", link.joint.name, "'");
   const int dof = joint_dof(link.joint.kind);
   require(dof > 0, where + ": a fixed joint has no coordinate to drive");
-  for (const Motor& other : model_.motors_) {
-    require(other.link != motor.link, where + ": this joint has a motor already");
-  }
+  require(!driven_links_.contains(motor.link), where + ": this joint has a motor already");
   require(motor.lower <= motor.upper, concat(where, ": range is [", motor.lower, ", ", motor.upper,
                                              "]; the lower must not exceed the upper"));
   const bool limited = std::isfinite(motor.lower) && std::isfinite(motor.upper);
@@ -215,6 +216,7 @@ int ModelBuilder::add_motor(const Motor& motor) {
   model_.first_control_.push_back(model_.control_count_);
   model_.control_count_ += dof;
   model_.motors_.push_back(motor);
+  driven_links_.insert(motor.link);
   return static_cast<int>(model_.motors_.size()) - 1;
 }
 
@@ -240,14 +242,16 @@ int ModelBuilder::add_contact(Contact contact) {
         concat(model_.link(contact.link).body.name, '-',
                contact.other == -1 ? std::string("ground") : model_.link(contact.other).body.name);
     const std::string base = contact.name;
-    for (int i = 2; contact_names_.contains(contact.name); ++i) {
+    for (int& i = next_duplicate_.try_emplace(base, 2).first->second;
+         model_.contact_names_.contains(contact.name); ++i) {
       contact.name = concat(base, '-', i);
     }
   }
-  require(!contact_names_.contains(contact.name),
+  require(!model_.contact_names_.contains(contact.name),
           concat("contact '", contact.name, "': this name is taken"));
   check_contact(model_, contact);
-  contact_names_.insert(contact.name);
+  model_.contact_names_.add(contact.name);
+  model_.is_tested_[static_cast<std::size_t>(contact.link)] = 1;
   model_.contacts_.push_back(std::move(contact));
   return model_.contact_count() - 1;
 }
@@ -266,16 +270,17 @@ int ModelBuilder::add_tactile_sensor(TactileSensor sensor) {
 
 RigidTransform<double> ModelBuilder::rest_pose(int link) const {
   check_link_index(link, "rest_pose");
-  RigidTransform<double> X_J;
-  for (int l = link; l != -1; l = model_.link(l).parent) {
-    X_J = model_.link(l).joint.X_PJ * X_J;
-  }
-  return X_J;
+  return rest_poses_[static_cast<std::size_t>(link)];
 }
 
-Model ModelBuilder::build() const {
+Model ModelBuilder::build() const& {
   require(!model_.links_.empty(), concat("model '", model_.name_, "' has no link"));
   return model_;
+}
+
+Model ModelBuilder::build() && {
+  require(!model_.links_.empty(), concat("model '", model_.name_, "' has no link"));
+  return std::move(model_);
 }
 
 Body solid_body(std::string name, const Shape& shape, double density,

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <string>
+#include <unordered_map>
 #include <unordered_set>
+#include <vector>
 
 #include "hbar/core/model/model.h"
 
@@ -49,16 +51,17 @@ class ModelBuilder {
   [[nodiscard]] RigidTransform<double> rest_pose(int link) const;
 
   /// @throws InvalidInput if the model has no link
-  [[nodiscard]] Model build() const;
+  [[nodiscard]] Model build() const&;
+  /// The same without a copy, where the builder is not needed any more: std::move(builder).build().
+  [[nodiscard]] Model build() &&;
 
  private:
   void check_link_index(int link, std::string_view what) const;
 
   Model model_;
-  std::unordered_set<std::string> link_names_;
-  std::unordered_set<std::string> joint_names_;
-  std::unordered_set<std::string> body_names_;
-  std::unordered_set<std::string> contact_names_;
+  std::vector<RigidTransform<double>> rest_poses_;       // per link
+  std::unordered_set<int> driven_links_;                 // those whose joints have a motor
+  std::unordered_map<std::string, int> next_duplicate_;  // of a contact's name: number to try next
 };
 
 /// A homogeneous solid body.

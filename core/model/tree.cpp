@@ -1,22 +1,22 @@
 #include "hbar/core/model/tree.h"
 
 namespace hbar {
-namespace {
-
-/// `ranges` followed by `next`, merged where they touch.
-std::vector<CoordinateRange> extended(std::vector<CoordinateRange> ranges, CoordinateRange next) {
-  if (next.begin == next.end) {
-    return ranges;
+int Tree::path_through(int i) {
+  const int above = ancestors_[static_cast<std::size_t>(i)];
+  const CoordinateRange own = node(i).coordinates;
+  if (own.begin == own.end) {
+    return above;
   }
-  if (!ranges.empty() && ranges.back().end == next.begin) {
-    ranges.back().end = next.end;
-  } else {
-    ranges.push_back(next);
+  CoordinatePath::Step step{own, above};
+  if (above >= 0) {
+    const CoordinatePath::Step& last = steps_[static_cast<std::size_t>(above)];
+    if (last.range.end == own.begin) {  // one range with it
+      step = {{last.range.begin, own.end}, last.next};
+    }
   }
-  return ranges;
+  steps_.push_back(step);
+  return static_cast<int>(steps_.size()) - 1;
 }
-
-}  // namespace
 
 int Tree::add_joint(const JointKind& kind, int parent_node, int link) {
   const std::vector<ElementaryMotion> motions = elementary_motions(kind);
@@ -31,8 +31,7 @@ int Tree::add_joint(const JointKind& kind, int parent_node, int link) {
     node.first = m == 0;
     node.last = m + 1 == motions.size();
     node.coordinates = {dof_, dof_ + motion_dof(node.motion)};
-    ancestors_.push_back(parent < 0 ? std::vector<CoordinateRange>{}
-                                    : extended(ancestors(parent), this->node(parent).coordinates));
+    ancestors_.push_back(parent < 0 ? -1 : path_through(parent));
     nodes_.push_back(node);
     for (int c = node.coordinates.begin; c < node.coordinates.end; ++c) {
       node_of_.push_back(index);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "hbar/core/model/joint.h"
@@ -25,6 +26,42 @@ struct Node {
   CoordinateRange coordinates;  ///< of this motion: 0, 1 or 3 of them
 };
 
+/// Ranges of coordinates on the way from a node to the world, the nearest first. Borrows the tree.
+class CoordinatePath {
+ public:
+  /// A range, and the index of the one before it on the way to the world; −1: there is none.
+  struct Step {
+    CoordinateRange range;
+    int next = -1;
+  };
+  /// Goes to the world, range by range.
+  class Iterator {
+   public:
+    Iterator(const std::vector<Step>* steps, int at) : steps_(steps), at_(at) {}
+    const CoordinateRange& operator*() const { return step().range; }
+    Iterator& operator++() {
+      at_ = step().next;
+      return *this;
+    }
+    friend bool operator==(const Iterator& a, const Iterator& b) { return a.at_ == b.at_; }
+
+   private:
+    [[nodiscard]] const Step& step() const { return (*steps_)[static_cast<std::size_t>(at_)]; }
+
+    const std::vector<Step>* steps_;
+    int at_;
+  };
+
+  CoordinatePath(const std::vector<Step>& steps, int first) : steps_(&steps), first_(first) {}
+  [[nodiscard]] Iterator begin() const { return {steps_, first_}; }
+  [[nodiscard]] Iterator end() const { return {steps_, -1}; }
+  [[nodiscard]] bool empty() const { return first_ < 0; }
+
+ private:
+  const std::vector<Step>* steps_;
+  int first_;
+};
+
 /// The kinematic tree as the recursions see it: nodes in topological order, coordinates in file
 /// order, and their ancestry.
 class Tree {
@@ -37,9 +74,9 @@ class Tree {
   [[nodiscard]] const Node& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
 
-  /// Coordinates of the strict ancestors of node i, as maximal contiguous ranges, ascending.
-  [[nodiscard]] const std::vector<CoordinateRange>& ancestors(int i) const {
-    return ancestors_[static_cast<std::size_t>(i)];
+  /// Coordinates of the strict ancestors of node i, as maximal contiguous ranges, descending.
+  [[nodiscard]] CoordinatePath ancestors(int i) const {
+    return {steps_, ancestors_[static_cast<std::size_t>(i)]};
   }
   /// The node a coordinate belongs to.
   [[nodiscard]] int node_of(int coordinate) const {
@@ -49,8 +86,13 @@ class Tree {
   [[nodiscard]] bool is_on_path(int above, int below) const;
 
  private:
+  /// Where the path begins that goes through node i and its ancestors.
+  int path_through(int i);
+
   std::vector<Node> nodes_;
-  std::vector<std::vector<CoordinateRange>> ancestors_;
+  // Paths share their ends, so that all of them together take memory in proportion to the nodes.
+  std::vector<CoordinatePath::Step> steps_;
+  std::vector<int> ancestors_;  // per node: where its path begins in steps_
   std::vector<int> node_of_;
   int dof_ = 0;
 };

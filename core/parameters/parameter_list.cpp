@@ -31,12 +31,6 @@ void list_transform(const Model& model, ParameterKind kind, int link, const std:
   }
 }
 
-/// Whether a contact tests the body's points.
-bool touches(const Model& model, int link) {
-  return std::any_of(model.contacts().begin(), model.contacts().end(),
-                     [link](const Contact& contact) { return contact.link == link; });
-}
-
 /// "N·m/rad" or "N/m" and the like, by what the joint's first coordinate is.
 std::string force_per(const Model& model, int link, bool per_rate) {
   const Joint& joint = model.link(link).joint;
@@ -71,7 +65,7 @@ void list_body_transform(const Model& model, int link, ParameterList& out) {
 
 void list_contact_points(const Model& model, int link, ParameterList& out) {
   const Link& owner = model.link(link);
-  if (!touches(model, link) && (owner.design_mask & kMaskContactPoints) == 0) {
+  if (!model.is_tested(link) && (owner.design_mask & kMaskContactPoints) == 0) {
     return;
   }
   for (int i = 0; i < owner.body.contact_points.cols(); ++i) {
@@ -115,7 +109,7 @@ void list_damping(const Model& model, int link, ParameterList& out) {
 void list_contact_scale(const Model& model, int link, ParameterList& out) {
   const Link& owner = model.link(link);
   const bool can_touch = owner.body.contact_points.cols() > 0;
-  if (touches(model, link) || (can_touch && (owner.design_mask & kMaskContactScale) != 0)) {
+  if (model.is_tested(link) || (can_touch && (owner.design_mask & kMaskContactScale) != 0)) {
     out.push_back({ParameterKind::kContactScale, link, 0,
                    concat("body.", owner.body.name, ".contact_scale"), "1", 1.0, 0.0, kUnbounded});
   }

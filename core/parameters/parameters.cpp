@@ -12,9 +12,15 @@
 namespace hbar {
 namespace {
 
-/// Whether `wanted` is `name` or a prefix of it that ends at a dot.
-bool selects(std::string_view wanted, std::string_view name) {
-  return name.starts_with(wanted) && (name.size() == wanted.size() || name[wanted.size()] == '.');
+/// Calls visit(prefix) for a name and each of its prefixes that ends before a dot, but the empty
+/// one.
+template <typename Visit>
+void for_each_prefix(std::string_view name, const Visit& visit) {
+  for (std::size_t end = 1; end <= name.size(); ++end) {
+    if (end == name.size() || name[end] == '.') {
+      visit(name.substr(0, end));
+    }
+  }
 }
 
 [[noreturn]] void refuse_value(const Parameter& parameter, double value, const char* range) {
@@ -80,16 +86,22 @@ ParameterSet ParameterSet::masked(const Model& model) {
 
 ParameterSet ParameterSet::named(const Model& model, const std::vector<std::string>& names) {
   std::vector<Parameter> every = list_parameters(model);
-  std::vector<bool> wanted(every.size(), false);
+  std::unordered_map<std::string_view, bool> selects;  // by name or prefix: whether it does
   for (const std::string& name : names) {
-    bool found = false;
-    for (std::size_t i = 0; i < every.size(); ++i) {
-      if (!name.empty() && selects(name, every[i].name)) {
+    selects.emplace(name, false);
+  }
+  std::vector<bool> wanted(every.size(), false);
+  for (std::size_t i = 0; i < every.size(); ++i) {
+    for_each_prefix(every[i].name, [&](std::string_view prefix) {
+      const auto found = selects.find(prefix);
+      if (found != selects.end()) {
+        found->second = true;
         wanted[i] = true;
-        found = true;
       }
-    }
-    if (!found) {
+    });
+  }
+  for (const std::string& name : names) {
+    if (!selects.at(name)) {
       std::vector<std::string> known;
       for (const Parameter& parameter : every) {
         known.push_back(parameter.name);

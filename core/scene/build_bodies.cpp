@@ -1,6 +1,7 @@
 #include "hbar/core/scene/build_bodies.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <utility>
 
 #include "hbar/core/base/error.h"
@@ -86,6 +87,9 @@ class BodyMaker {
   [[nodiscard]] BuiltBody make(const MeshBody& shape) const {
     MendedMesh file = mesh_of(shape);  // in the file's frame O
     TriangleMesh& mesh = file.mesh;
+    if (!shape.contacts) {
+      check_choice(shape.contact_count, mesh);
+    }
     const SolidMoments moments = solid_moments(mesh);
     const PrincipalAxes principal = principal_axes(moments.inertia);
     const Pose X_OB = {principal.axes, moments.centre};
@@ -133,6 +137,24 @@ class BodyMaker {
       check_overlap(file.mesh);
       return file;
     });
+  }
+
+  /// Refuses a choice of contact points that would take minutes: each is compared with all
+  /// vertices.
+  void check_choice(int count, const TriangleMesh& mesh) const {
+    constexpr double kMostComparisons = 1e9;
+    const auto vertices = static_cast<double>(mesh.vertices.size());
+    const double most = kMostComparisons / std::max(vertices, 1.0);
+    if (std::min<double>(count, vertices) > most) {
+      throw InvalidInput(place("body", body_.line, "contact_count", concat(count)) +
+                         concat("of the ", mesh.vertices.size(), " vertices of ", mesh_name(),
+                                " at most ", static_cast<int>(most),
+                                " can be chosen; give fewer, or the points in a file: contacts"));
+    }
+  }
+
+  [[nodiscard]] const std::string& mesh_name() const {
+    return std::get<MeshBody>(body_.shape).filename;
   }
 
   /// The points of a file, scaled.

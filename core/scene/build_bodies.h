@@ -28,7 +28,7 @@ struct BodyMesh {
 
 /// A body of a model, with what its contacts and sensors need in addition.
 struct BuiltBody {
-  hbar::Body body;                        ///< with its contact points
+  hbar::Body body;                        ///< with its contact points; moved into the model
   RigidTransform<double> X_BG = {};       ///< the frame the scene gives points of it in: the OBJ
                                           ///< file's of a mesh, that of pos and quat of any other
   std::optional<BodyMesh> mesh = {};      ///< of a mesh body

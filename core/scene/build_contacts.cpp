@@ -43,8 +43,8 @@ Plane ground_plane(const Description& description) {
 /// Makes the contacts of a scene.
 class ContactMaker {
  public:
-  ContactMaker(const Scene& scene, const BuiltBodies& bodies)
-      : bodies_(bodies), ground_(ground_plane(scene.description)) {}
+  ContactMaker(const Scene& scene, const BuiltBodies& bodies, const std::atomic<bool>* stop)
+      : bodies_(bodies), ground_(ground_plane(scene.description)), stop_(stop) {}
 
   [[nodiscard]] std::vector<hbar::Contact> make(const Contact& contact) {
     hbar::Contact first = make_law(contact);
@@ -75,13 +75,14 @@ class ContactMaker {
     }
     std::shared_ptr<const DistanceField>& field = fields_[link];
     if (!field) {
-      field = cached_mesh_distance(mesh->surface, mesh->cells, mesh->file);
+      field = cached_mesh_distance(mesh->surface, mesh->cells, mesh->file, stop_);
     }
     return field;
   }
 
   const BuiltBodies& bodies_;
   Plane ground_;
+  const std::atomic<bool>* stop_;
   std::unordered_map<int, std::shared_ptr<const DistanceField>> fields_;  ///< by link
 };
 
@@ -96,8 +97,9 @@ std::string place_of(const Scene& scene, const Contact& contact) {
 
 }  // namespace
 
-void add_contacts(const Scene& scene, const BuiltBodies& bodies, ModelBuilder& builder) {
-  ContactMaker maker(scene, bodies);
+void add_contacts(const Scene& scene, const BuiltBodies& bodies, ModelBuilder& builder,
+                  const std::atomic<bool>* stop) {
+  ContactMaker maker(scene, bodies, stop);
   for (const Contact& contact : scene.description.contacts) {
     with_place(place_of(scene, contact), [&] {
       for (hbar::Contact& made : maker.make(contact)) {

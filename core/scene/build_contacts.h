@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+
 #include "hbar/core/model/model_builder.h"
 #include "hbar/core/scene/build_bodies.h"
 
@@ -12,9 +14,12 @@ namespace hbar::scene {
 /// @param scene    the scene as read
 /// @param bodies   of the model's links
 /// @param builder  holds the links; takes the contacts
+/// @param stop     ends the computation of a mesh's distance when it is set; may be null
 /// @throws InvalidInput  if the model refuses a contact (a file of contact points was empty, names
 ///                       of contacts are equal) or a mesh has no distance; messages begin
 ///                       `file:line: <element ...>:`
-void add_contacts(const Scene& scene, const BuiltBodies& bodies, ModelBuilder& builder);
+/// @throws Interrupted   if `stop` is set on the way
+void add_contacts(const Scene& scene, const BuiltBodies& bodies, ModelBuilder& builder,
+                  const std::atomic<bool>* stop = nullptr);
 
 }  // namespace hbar::scene

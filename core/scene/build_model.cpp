@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hbar/core/base/error.h"
+#include "hbar/core/base/stop_flag.h"
 #include "hbar/core/model/model_builder.h"
 #include "hbar/core/scene/build_bodies.h"
 #include "hbar/core/scene/build_contacts.h"
@@ -69,11 +70,13 @@ hbar::Joint make_joint(const Joint& joint, const Pose& X_WP) {
 }
 
 /// Adds the links of one robot; remembers which link carries which joint and which body.
-void add_robot(const Scene& scene, const Robot& robot, ModelBuilder& builder,
-               std::unordered_map<std::string, int>& link_of_joint, BuiltBodies& bodies) {
+void add_robot(const Scene& scene, const Robot& robot, const std::atomic<bool>* stop,
+               ModelBuilder& builder, std::unordered_map<std::string, int>& link_of_joint,
+               BuiltBodies& bodies) {
   std::vector<Pose> X_W;  // rest pose of each joint frame in the world
   std::vector<int> index;
   for (const Link& link : robot.links) {
+    require_running(stop, scene.file, ": loading interrupted at link '", link.name, "'");
     const auto parent = static_cast<std::size_t>(link.parent);
     if (link.parent >= static_cast<int>(index.size())) {
       throw InvalidInput(concat("link '", link.name, "': its parent must come before it"));
@@ -85,7 +88,7 @@ void add_robot(const Scene& scene, const Robot& robot, ModelBuilder& builder,
     with_place(
         attribute_place({scene.file, {}, {}}, link.line.number, "link", "name", link.name), [&] {
           index.push_back(builder.add_link(link.parent < 0 ? -1 : index[parent], std::move(joint),
-                                           bodies.of_link.back().body, link.name,
+                                           std::move(bodies.of_link.back().body), link.name,
                                            static_cast<unsigned>(link.design_params)));
         });
     link_of_joint.emplace(link.joint.name, index.back());
@@ -119,7 +122,8 @@ hbar::Motor make_motor(const Motor& motor, int link) {
 
 }  // namespace
 
-Model build_model(const Scene& scene, std::vector<std::string>* notices) {
+Model build_model(const Scene& scene, std::vector<std::string>* notices,
+                  const std::atomic<bool>* stop) {
   const Description& description = scene.description;
   const bool metres = description.options.unit == UnitSystem::kMKg;
   ModelBuilder builder(description.model, metres ? Units::kMetreKilogram : Units::kCentimetreGram);
@@ -127,7 +131,7 @@ Model build_model(const Scene& scene, std::vector<std::string>* notices) {
   std::unordered_map<std::string, int> link_of_joint;
   BuiltBodies bodies;
   for (const Robot& robot : description.robots) {
-    add_robot(scene, robot, builder, link_of_joint, bodies);
+    add_robot(scene, robot, stop, builder, link_of_joint, bodies);
   }
   for (const Motor& motor : description.motors) {
     builder.add_motor(make_motor(motor, link_of(link_of_joint, motor.joint)));
@@ -136,14 +140,14 @@ Model build_model(const Scene& scene, std::vector<std::string>* notices) {
     builder.add_end_effector(
         {point.name.value_or(""), link_of(link_of_joint, point.joint), vector(point.pos)});
   }
-  add_contacts(scene, bodies, builder);
+  add_contacts(scene, bodies, builder, stop);
   add_tactile_sensors(scene, bodies, builder);
   for (const BuiltBody& body : bodies.of_link) {
     if (notices != nullptr) {
       notices->insert(notices->end(), body.notices.begin(), body.notices.end());
     }
   }
-  return builder.build();
+  return std::move(builder).build();
 }
 
 }  // namespace hbar::scene

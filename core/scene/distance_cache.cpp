@@ -60,12 +60,13 @@ std::filesystem::path distance_cache_path(const TriangleMesh& mesh_in_body_frame
 
 std::shared_ptr<const DistanceField> cached_mesh_distance(const TriangleMesh& mesh_in_body_frame,
                                                           int cells,
-                                                          const std::filesystem::path& mesh_file) {
+                                                          const std::filesystem::path& mesh_file,
+                                                          const std::atomic<bool>* stop) {
   const std::filesystem::path path = distance_cache_path(mesh_in_body_frame, cells, mesh_file);
   if (auto kept = read_grid(path)) {
     return kept;
   }
-  auto grid = std::make_shared<DistanceGrid>(mesh_in_body_frame, cells);
+  auto grid = std::make_shared<DistanceGrid>(mesh_in_body_frame, cells, stop);
   try {
     write_file_atomically(path, grid->bytes());
   } catch (const IoError&) {  // only the next run's time is lost

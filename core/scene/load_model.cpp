@@ -7,10 +7,10 @@
 
 namespace hbar::scene {
 
-LoadedModel load_model(const std::filesystem::path& path) {
+LoadedModel load_model(const std::filesystem::path& path, const std::atomic<bool>* stop) {
   Scene scene = read_scene(path);
   std::vector<std::string> notices = std::move(scene.notices);
-  Model model = build_model(scene, &notices);
+  Model model = build_model(scene, &notices, stop);
   return {std::move(model), std::move(notices)};
 }
 

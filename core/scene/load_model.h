@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,7 +16,9 @@ struct LoadedModel {
 };
 
 /// read_scene and build_model in one.
-/// @throws IoError, InvalidInput  as they do
-[[nodiscard]] LoadedModel load_model(const std::filesystem::path& path);
+/// @param stop  as build_model's
+/// @throws IoError, InvalidInput, Interrupted  as they do
+[[nodiscard]] LoadedModel load_model(const std::filesystem::path& path,
+                                     const std::atomic<bool>* stop = nullptr);
 
 }  // namespace hbar::scene

@@ -7,6 +7,7 @@
 #include "hbar/core/base/error.h"
 #include "hbar/core/base/unit_vector.h"
 #include "hbar/core/files/numbers.h"
+#include "hbar/core/geometry/surface_points.h"
 #include "hbar/core/model/moments.h"
 #include "hbar/core/scene/principal_axes.h"
 #include "hbar/core/scene/read_elements.h"
@@ -57,27 +58,49 @@ void notice_default_damping(const XmlElement& element, const Joint& joint) {
   }
 }
 
+/// Refuses more contact points than a body may have.
+void limit_points(const XmlElement& element, std::string_view attribute, const Shape& kind,
+                  const SurfaceResolution& resolution) {
+  const double count = surface_point_count(kind, resolution);
+  if (count > kMaxContactPoints) {
+    element.fail(attribute, concat("that makes ", count, " contact points"),
+                 concat("a body has at most ", kMaxContactPoints));
+  }
+}
+
 CuboidBody read_cuboid(const XmlElement& element) {
-  return {element.numbers<3>("size"), element.integers<3>("general_contact_resolution")};
+  CuboidBody body{element.numbers<3>("size"), element.integers<3>("general_contact_resolution")};
+  limit_points(element, "general_contact_resolution", Cuboid(),
+               {.cuboid = body.general_contact_resolution});
+  return body;
 }
 
 SphereBody read_sphere(const XmlElement& element) {
   SphereBody body{element.number("radius"), {}};
   if (element.has("general_contact_resolution")) {
     body.general_contact_resolution = element.integers<2>("general_contact_resolution");
+    limit_points(element, "general_contact_resolution", Sphere(),
+                 {.sphere = *body.general_contact_resolution});
   }
   return body;
 }
 
 CylinderBody read_cylinder(const XmlElement& element) {
-  return {element.number("radius"), element.number("length"),
-          element.integer("general_contact_angle_resolution"),
-          element.integer("general_contact_radius_resolution")};
+  CylinderBody body{element.number("radius"), element.number("length"),
+                    element.integer("general_contact_angle_resolution"),
+                    element.integer("general_contact_radius_resolution")};
+  limit_points(element, "general_contact_angle_resolution", Cylinder(),
+               {.cylinder = {body.general_contact_angle_resolution,
+                             body.general_contact_radius_resolution}});
+  return body;
 }
 
 CapsuleBody read_capsule(const XmlElement& element) {
-  return {element.number("radius"), element.number("length"),
-          element.integers<2>("general_contact_resolution")};
+  CapsuleBody body{element.number("radius"), element.number("length"),
+                   element.integers<2>("general_contact_resolution")};
+  limit_points(element, "general_contact_resolution", Capsule(),
+               {.capsule = body.general_contact_resolution});
+  return body;
 }
 
 MeshBody read_mesh(const XmlElement& element) {

@@ -8,6 +8,7 @@
 #include "hbar/core/base/unit_vector.h"
 #include "hbar/core/files/numbers.h"
 #include "hbar/core/files/text_file.h"
+#include "hbar/core/geometry/surface_points.h"
 #include "hbar/core/scene/text_lines.h"
 
 namespace hbar::scene {
@@ -32,6 +33,11 @@ void read_rows(std::string_view text, const std::string& name, std::size_t word_
       }
       if (words.size() != 1 || *count < 0) {
         fail_in_line(name, line, "the file begins with the number of points, alone in its line");
+      }
+      if (*count > kMaxContactPoints) {
+        fail_in_line(name, line,
+                     concat("the file has ", *count, " points; at most ", kMaxContactPoints,
+                            " are allowed"));
       }
       return;
     }

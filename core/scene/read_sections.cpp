@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "hbar/core/base/unit_vector.h"
+#include "hbar/core/geometry/surface_points.h"
 #include "hbar/core/scene/read_elements.h"
 
 namespace hbar::scene {
@@ -19,6 +20,11 @@ RectArray read_rect_array(const XmlElement& element) {
   const RectArray points{element.numbers<3>("rect_pos0"), element.numbers<3>("rect_pos1"),
                          element.numbers<3>("axis0"), element.numbers<3>("axis1"),
                          element.integers<2>("resolution")};
+  const double count = static_cast<double>(points.resolution[0]) * points.resolution[1];
+  if (count > kMaxContactPoints) {
+    element.fail("resolution", concat("that makes ", count, " points"),
+                 concat("a sensor has at most ", kMaxContactPoints));
+  }
   const Eigen::Vector3d normal =
       unit_vector(vector(points.axis0)).cross(unit_vector(vector(points.axis1)));
   if (normal.norm() < kLeastSine) {

@@ -23,6 +23,8 @@ std::string range_text(Range range) {
       return ", lower <= upper";
     case Range::kAtLeastOne:
       return " >= 1";
+    case Range::kCount:
+      return concat(" from 1 to ", kMaxCount);
     case Range::kAtLeastTwo:
       return " >= 2";
     case Range::kGridCells:

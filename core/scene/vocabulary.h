@@ -22,10 +22,14 @@ enum class Range {
   kNoZero,       ///< none 0
   kOrdered,      ///< two, the first not above the second
   kAtLeastOne,   ///< each ≥ 1
+  kCount,        ///< each 1 … kMaxCount
   kAtLeastTwo,   ///< each ≥ 2
   kGridCells,    ///< each 8 … 256
   kMask          ///< 0 … 63
 };
+
+/// The largest count that a file may give where nothing else limits it.
+inline constexpr int kMaxCount = 1'000'000;
 
 /// One attribute of one element.
 struct AttributeInfo {

@@ -260,6 +260,9 @@ void XmlElement::check_range(std::string_view attribute, const std::vector<doubl
     case Range::kAtLeastOne:
       ok = all([](double v) { return v >= 1.0; });
       break;
+    case Range::kCount:
+      ok = all([](double v) { return v >= 1.0 && v <= kMaxCount; });
+      break;
     case Range::kAtLeastTwo:
       ok = all([](double v) { return v >= 2.0; });
       break;

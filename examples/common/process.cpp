@@ -100,6 +100,8 @@ ExitCode outcome_of(const std::function<ExitCode()>& run) noexcept {
     return say(error, error.code());
   } catch (const IoError& error) {
     return say(error, ExitCode::kInputOutput);
+  } catch (const Interrupted& error) {
+    return say(error, ExitCode::kInterrupted);
   } catch (const InvalidInput& error) {
     return say(error, ExitCode::kBadScene);
   } catch (const solvers::OutOfMemory& error) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <limits>
 #include <map>
 #include <sstream>
 
@@ -98,6 +99,9 @@ constexpr std::array<OptionRow, 28> kOptions = {{
      "Folder of the examples' scenes (that of the source the command was built from)."},
 }};
 
+/// Of a simulation; memory sets a lower limit, which depends on the scene.
+constexpr int kMostSteps = 1'000'000'000;
+
 std::optional<std::string> integrator(const Given& given) {
   const std::optional<std::string> text = value_of(given, "--integrator");
   if (text) {
@@ -139,7 +143,12 @@ Arguments read(Command command, std::string scene, const Given& given) {
   Arguments out;
   out.command = command;
   out.scene = std::move(scene);
-  out.load.steps = count(given, "--steps").value_or(out.load.steps);
+  out.load.steps = count(given, "--steps", kMostSteps).value_or(out.load.steps);
+  if (command == Command::kInfo) {  // nothing is simulated: a model of any size may be looked at
+    out.load.steps = 1;
+    out.load.max_memory = std::numeric_limits<double>::infinity();
+  }
+  out.load.keep_factors = command == Command::kGradient || command == Command::kCheck;
   out.load.h = positive_number(given, "--dt");
   out.load.integrator = integrator(given);
   out.load.newton_tol = positive_number(given, "--newton-tol");

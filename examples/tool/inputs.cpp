@@ -11,6 +11,7 @@
 #include "hbar/core/files/numbers.h"
 #include "hbar/core/files/text_file.h"
 #include "labels.h"
+#include "results_memory.h"
 
 namespace hbar::tool {
 
@@ -144,6 +145,7 @@ void notice_start(LoadedProblem& loaded) {
 LoadedProblem load(const Arguments& arguments) {
   try {
     LoadedProblem loaded = load_problem(arguments.scene, arguments.load);
+    require_memory(arguments, loaded);
     Inputs& inputs = loaded.problem.inputs;
     const Model& model = loaded.problem.horizon.model();
     set_state(arguments.q0, "--q0", model, inputs.q0);

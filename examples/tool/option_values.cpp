@@ -16,7 +16,7 @@ using example::ExitCode;
 using example::ProgramError;
 namespace {
 
-int read_count(const std::string& name, const std::string& text) {
+int read_count(const std::string& name, const std::string& text, int most) {
   std::string reason;
   const std::optional<int> number = scene::parse_integer(text, reason);
   if (!number) {
@@ -24,6 +24,9 @@ int read_count(const std::string& name, const std::string& text) {
   }
   if (*number < 1) {
     usage(fmt::format("{}: {} is not at least 1", name, text));
+  }
+  if (*number > most) {
+    usage(fmt::format("{}: {} is above {}, the largest that is allowed", name, text, most));
   }
   return *number;
 }
@@ -53,19 +56,19 @@ std::optional<double> positive_number(const Given& given, const std::string& nam
   return number;
 }
 
-std::optional<int> count(const Given& given, const std::string& name) {
+std::optional<int> count(const Given& given, const std::string& name, int most) {
   const std::optional<std::string> text = value_of(given, name);
-  return text ? std::optional(read_count(name, *text)) : std::nullopt;
+  return text ? std::optional(read_count(name, *text, most)) : std::nullopt;
 }
 
-std::optional<std::vector<int>> counts(const Given& given, const std::string& name) {
+std::optional<std::vector<int>> counts(const Given& given, const std::string& name, int most) {
   const std::optional<std::vector<std::string>> list = words(given, name);
   if (!list) {
     return std::nullopt;
   }
   std::vector<int> out;
   for (const std::string& word : *list) {
-    out.push_back(read_count(name, word));
+    out.push_back(read_count(name, word, most));
   }
   return out;
 }

@@ -22,10 +22,11 @@ using Given = std::map<std::string, std::string>;
 
 /// A number > 0.
 [[nodiscard]] std::optional<double> positive_number(const Given& given, const std::string& name);
-/// A whole number ≥ 1.
-[[nodiscard]] std::optional<int> count(const Given& given, const std::string& name);
-/// A list of whole numbers ≥ 1, at least one.
-[[nodiscard]] std::optional<std::vector<int>> counts(const Given& given, const std::string& name);
+/// A whole number from 1 to `most`.
+[[nodiscard]] std::optional<int> count(const Given& given, const std::string& name, int most);
+/// A list of whole numbers from 1 to `most`, at least one.
+[[nodiscard]] std::optional<std::vector<int>> counts(const Given& given, const std::string& name,
+                                                     int most);
 /// A list of numbers.
 [[nodiscard]] std::optional<std::vector<double>> numbers(const Given& given,
                                                          const std::string& name);

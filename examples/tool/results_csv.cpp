@@ -22,6 +22,10 @@ std::string results_csv(const LoadedProblem& loaded, const Results& results) {
     text += "," + name;
   }
   text += '\n';
+  constexpr Eigen::Index kDigits = 24;  // the longest number with its separator
+  const Eigen::Index columns =
+      1 + 2 * values.q.rows() + values.v().rows() + values.tactile().rows();
+  text.reserve(text.size() + static_cast<std::size_t>(kDigits * columns * values.q.cols()));
   for (Eigen::Index k = 0; k < values.q.cols(); ++k) {
     const auto end = std::back_inserter(text);
     fmt::format_to(end, "{:.17g}", static_cast<double>(k) * values.h);

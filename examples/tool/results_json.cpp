@@ -15,12 +15,24 @@ using Json = nlohmann::ordered_json;
 class Writer {
  public:
   std::string write(const Json& json) {
+    text_.reserve(kDigits * count(json));
     value(json, 0);
     text_ += '\n';
     return std::move(text_);
   }
 
  private:
+  static constexpr std::size_t kDigits = 24;  // the longest number with its separator
+
+  /// How many values there are: a text that grows while it is written is held twice.
+  static std::size_t count(const Json& json) {
+    std::size_t sum = 1;
+    for (const Json& member : json) {
+      sum += member.is_structured() ? count(member) : 1;
+    }
+    return sum;
+  }
+
   void line(int depth) {
     text_ += '\n';
     text_.append(static_cast<std::size_t>(depth), ' ');
@@ -87,16 +99,18 @@ class Writer {
 };
 
 Json list(const Eigen::Ref<const Eigen::VectorXd>& vector) {
-  Json out = Json::array();
+  Json::array_t out;
+  out.reserve(static_cast<std::size_t>(vector.size()));
   for (const double entry : vector) {
-    out.push_back(entry);
+    out.emplace_back(entry);
   }
   return out;
 }
 
 /// A row per column: time runs down a file.
 Json rows(const Eigen::Ref<const Eigen::MatrixXd>& columns) {
-  Json out = Json::array();
+  Json::array_t out;
+  out.reserve(static_cast<std::size_t>(columns.cols()));
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
     out.push_back(list(columns.col(k)));
   }
@@ -137,9 +151,10 @@ Json contact_json(const Model& model, const Results& results) {
   for (int i = 0; i < model.contact_count(); ++i) {
     const auto contact = static_cast<std::size_t>(i);
     const auto history = [&results, contact](auto member) {
-      Json numbers = Json::array();
+      Json::array_t numbers;
+      numbers.reserve(results.contact.size());
       for (std::size_t k = 1; k < results.contact.size(); ++k) {
-        numbers.push_back(results.contact[k][contact].*member);
+        numbers.emplace_back(results.contact[k][contact].*member);
       }
       return numbers;
     };

@@ -9,6 +9,13 @@ namespace {
 
 const std::vector<std::string> kSizes = {"small", "medium", "large", "all"};
 
+// Systems larger than these take more than the memory or the patience of a measurement: a matrix of
+// the generated models has joints² entries per step, and each of them is factorised `repeat` times.
+constexpr int kMostJoints = 10'000;
+constexpr int kMostSystemSteps = 1'000'000;
+constexpr int kMostRhs = 10'000;
+constexpr int kMostRepeats = 10'000;
+
 std::vector<std::string> system_names() {
   std::vector<std::string> names;
   for (const SystemKind kind :
@@ -43,8 +50,8 @@ SolverArguments read_solver_arguments(const std::vector<std::string>& scenes, co
   out.families =
       words(given, "--family")
           .value_or(named ? std::vector<std::string>() : std::vector<std::string>{"all"});
-  out.joints = counts(given, "--dof").value_or(std::vector{7});
-  out.steps = counts(given, "--steps").value_or(std::vector{50});
+  out.joints = counts(given, "--dof", kMostJoints).value_or(std::vector{7});
+  out.steps = counts(given, "--steps", kMostSystemSteps).value_or(std::vector{50});
   out.integrators = known_words(given, "--integrator", integrator_names(), {"bdf2"});
   out.systems = known_words(given, "--system", system_names(), system_names());
   out.solvers = words(given, "--solver").value_or(std::vector<std::string>{"all"});
@@ -54,8 +61,8 @@ SolverArguments read_solver_arguments(const std::vector<std::string>& scenes, co
   out.orderings = words(given, "--ordering").value_or(std::vector<std::string>{"default"});
   out.clock = value_of(given, "--clock").value_or(out.clock);
   check_name("--clock", out.clock, {"wall", "cpu"});
-  out.rhs = count(given, "--rhs").value_or(out.rhs);
-  out.repeat = count(given, "--repeat").value_or(out.repeat);
+  out.rhs = count(given, "--rhs", kMostRhs).value_or(out.rhs);
+  out.repeat = count(given, "--repeat", kMostRepeats).value_or(out.repeat);
   out.json = file(given, "--json");
   out.csv = file(given, "--csv");
   out.plots = file(given, "--plots");

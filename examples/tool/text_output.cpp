@@ -52,6 +52,14 @@ std::string range(double lower, double upper) {
   return fmt::format("[{:.4g}, {:.4g}]", lower, upper);
 }
 
+/// A link's name, indented by its depth in the tree: down to a level at which lines would become
+/// longer than what they say, and from there on with the depth in words.
+std::string indented(std::size_t depth, const std::string& name) {
+  constexpr std::size_t kDeepest = 20;
+  const std::string indent(2 * std::min(depth, kDeepest), ' ');
+  return depth <= kDeepest ? indent + name : fmt::format("{}{} (depth {})", indent, name, depth);
+}
+
 std::string link_lines(const Model& model) {
   Table table;
   std::vector<std::size_t> depth;
@@ -64,7 +72,7 @@ std::string link_lines(const Model& model) {
       coordinates +=
           fmt::format("{}q{} {}", i == own.begin ? "" : ", ", i, model.coordinate_name(i));
     }
-    table.add({std::string(2 * depth.back(), ' ') + link.name, link.joint.name,
+    table.add({indented(depth.back(), link.name), link.joint.name,
                std::string(joint_type(link.joint.kind)), link.body.name,
                fmt::format("{} {}", number(link.body.mass), mass_unit(model.units())),
                coordinates});

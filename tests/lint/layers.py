@@ -24,7 +24,7 @@ LIBRARIES = {
     "gtest": r"g(test|mock)/",
     "benchmark": r"benchmark/",
     "mujoco": r"mujoco/",
-    "posix": r"(sys/\w+|unistd|fcntl|signal|pthread|dlfcn|poll|stdlib|stdio)\.h$",
+    "posix": r"(sys/\w+|unistd|dirent|fcntl|signal|pthread|dlfcn|poll|stdlib|stdio)\.h$",
 }
 # folder: (folders it may include, and with them what those may; third-party libraries)
 LAYERS = {

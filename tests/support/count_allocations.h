@@ -1,41 +1,36 @@
 #pragma once
 
-#include <atomic>
+#include <cerrno>
 #include <cstddef>
 #include <cstdlib>
 #include <new>
 
-/// Counts the allocations of a whole program, Eigen's included. It replaces malloc (with glibc) or,
-/// under a sanitizer, operator new alone: include it in one .cpp of an executable, no more.
+#include "tests/support/allocation_counters.h"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define HBAR_COUNTS_MALLOC 0
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define HBAR_COUNTS_MALLOC 0
-#endif
-#endif
-#if !defined(HBAR_COUNTS_MALLOC)
-#if defined(__GLIBC__)
-#define HBAR_COUNTS_MALLOC 1
-#else
-#define HBAR_COUNTS_MALLOC 0
-#endif
+/// Counts the allocations of a whole program, Eigen's included. It replaces malloc (with glibc) or,
+/// under a sanitizer, operator new alone: include it in one .cpp of an executable, no more; others
+/// that read the counters include allocation_counters.h.
+
+#if HBAR_COUNTS_MALLOC
+extern "C" std::size_t malloc_usable_size(void* block) noexcept;
 #endif
 
 namespace hbar::testing {
 
-inline std::atomic<std::size_t>& allocation_count() {
-  static std::atomic<std::size_t> count = 0;
-  return count;
+inline void* counted_block(void* block) {
+  ++allocation_count();
+#if HBAR_COUNTS_MALLOC
+  count_bytes(block == nullptr ? 0 : static_cast<std::ptrdiff_t>(malloc_usable_size(block)));
+#endif
+  return block;
 }
 
-/// Number of allocations that a call makes.
-template <typename Call>
-[[nodiscard]] std::size_t allocations_of(const Call& call) {
-  const std::size_t before = allocation_count();
-  call();
-  return allocation_count() - before;
+inline void count_free(void* block) {
+#if HBAR_COUNTS_MALLOC
+  count_bytes(block == nullptr ? 0 : -static_cast<std::ptrdiff_t>(malloc_usable_size(block)));
+#else
+  static_cast<void>(block);
+#endif
 }
 
 }  // namespace hbar::testing
@@ -43,14 +38,33 @@ template <typename Call>
 #if HBAR_COUNTS_MALLOC
 extern "C" {
 void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+void __libc_free(void* block);
 void* malloc(std::size_t size) noexcept {
-  ++hbar::testing::allocation_count();
-  return __libc_malloc(size);
+  return hbar::testing::counted_block(__libc_malloc(size));
+}
+void* calloc(std::size_t count, std::size_t size) noexcept {
+  return hbar::testing::counted_block(__libc_calloc(count, size));
 }
 void* realloc(void* block, std::size_t size) noexcept {
-  ++hbar::testing::allocation_count();
-  return __libc_realloc(block, size);
+  hbar::testing::count_free(block);
+  return hbar::testing::counted_block(__libc_realloc(block, size));
+}
+void* memalign(std::size_t alignment, std::size_t size) noexcept {
+  return hbar::testing::counted_block(__libc_memalign(alignment, size));
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  return hbar::testing::counted_block(__libc_memalign(alignment, size));
+}
+int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexcept {
+  *block = hbar::testing::counted_block(__libc_memalign(alignment, size));
+  return *block == nullptr ? ENOMEM : 0;
+}
+void free(void* block) noexcept {
+  hbar::testing::count_free(block);
+  __libc_free(block);
 }
 }
 #else

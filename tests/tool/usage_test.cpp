@@ -49,6 +49,8 @@ TEST_F(Usage, EveryMistakeIsNamed) {
        "simulate: what is \"other.xml\" for? One scene is enough (see: hbar simulate --help)"},
       {{"simulate", file, "--steps", "1.5x"}, "--steps: \"1.5x\" is not a whole number"},
       {{"simulate", file, "--steps", "0"}, "--steps: 0 is not at least 1"},
+      {{"simulate", file, "--steps", "1000000001"},
+       "--steps: 1000000001 is above 1000000000, the largest that is allowed"},
       {{"simulate", file, "--dt", "1.5x"}, "--dt: \"1.5x\" is not a finite number"},
       {{"simulate", file, "--dt", "nan"}, "--dt: \"nan\" is not a finite number"},
       {{"simulate", file, "--dt", "-0.1"}, "--dt: -0.1 is not positive"},
@@ -92,6 +94,46 @@ TEST_F(Usage, TooManyStepsForTheMemoryAreRefusedUpFront) {
   const Outcome outcome = hbar({"simulate", scene("pendulum"), "--steps", "1000000000"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("GB"), std::string::npos) << outcome.err;
+  // The trajectory would fit, its text in a file would not.
+  const std::vector<std::string> many = {"simulate", scene("pendulum"), "--steps", "12000000"};
+  std::vector<std::string> with_file = many;
+  with_file.insert(with_file.end(), {"--out", path("r.json")});
+  const Outcome text = hbar(with_file);
+  EXPECT_EQ(text.code, 2);
+  EXPECT_EQ(
+      text.err,
+      "hbar: --steps: 12000000 steps and their results take about 4.67 GB; the limit is 4 GB: "
+      "take fewer steps\n");
+}
+
+TEST_F(Usage, TooManyContactPointsAreRefusedAtOnce) {
+  const std::string file = write(
+      "points.xml",
+      "<redmax>\n<robot>\n<link name=\"a\"><joint type=\"free3d-exp\"/>\n<body type=\"cuboid\" "
+      "size=\"1 1 1\" general_contact_resolution=\"3000 3000 "
+      "3000\"/></link>\n</robot>\n</redmax>\n");
+  const Outcome outcome = hbar({"info", file});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.err,
+            "hbar: points.xml:4: <body general_contact_resolution=\"3000 3000 3000\">: that makes "
+            "5.3964e+07 contact points; a body has at most 1000000\n");
+}
+
+TEST_F(Usage, DeepTreesAreShownWithDepthsInNumbers) {
+  std::string text = "<redmax>\n<robot>\n";
+  for (int i = 0; i < 30; ++i) {
+    const std::string name = "l" + std::to_string(i);
+    text +=
+        "<link name=\"" + name + "\"" +
+        (i > 0 ? " parent=\"l" + std::to_string(i - 1) + "\"" : "") +
+        "><joint type=\"revolute\" axis=\"0 1 0\"/><body type=\"sphere\" radius=\"1\"/></link>\n";
+  }
+  const Outcome outcome =
+      hbar({"info", write("deep.xml", text + "</robot>\n</redmax>\n"), "--params", "none"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const std::string indent(40, ' ');
+  EXPECT_NE(outcome.out.find("\n  " + indent + "l20  "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("\n  " + indent + "l29 (depth 29)  "), std::string::npos);
 }
 
 TEST_F(Usage, BadScenesAndControlsExitWithThree) {

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <atomic>
 
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
+#include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 #include "tests/support/random.h"
 #include "tests/support/small_problems.h"
@@ -70,6 +72,38 @@ TEST(BackwardSweep, IsTheGradientWhoeverSolvesTheBlocks) {
       EXPECT_LT(testing::relative_gap(found.qdot0, expected.qdot0), 1e-11) << integrator;
     }
   }
+}
+
+TEST(BackwardSweep, EndsBeforeTheStageAtWhichItsFlagIsSet) {
+  std::atomic<bool> stop = false;
+  const Problem problem = testing::small_problem("sdirk2");
+  SimulationOptions options = problem.horizon.options();
+  options.stop = &stop;
+  const Horizon horizon = problem.horizon.with(options);
+  const Trajectory trajectory = simulate(horizon, problem.inputs).trajectory();
+  const TrajectoryPartials weights = problem.objective.partials(read_values(horizon, trajectory));
+  const Applied<double> applied{*trajectory.mechanism, horizon.parameters(), trajectory.inputs.p};
+  BackwardSweep<double> sweep(horizon);
+  const int last = trajectory.timeline.last_stage();
+  int solved = 0;
+  const auto run = [&](int before_stop) {
+    solved = 0;
+    sweep.run(
+        {trajectory, applied, trajectory.q, trajectory.qdot, trajectory.inputs.u},
+        {weights.q, weights.qdot, weights.measured, weights.u, weights.p},
+        [&](int s, const Eigen::VectorXd& y, StageResidual<double>& stage, Eigen::VectorXd& z) {
+          solve_anew<double>(s, y, stage, z);
+          stop = ++solved == before_stop;
+        });
+  };
+  EXPECT_EQ(testing::message_of<Interrupted>([&] { run(3); }),
+            concat("backward sweep interrupted at stage ", last - 3, " of ", last));
+  EXPECT_EQ(solved, 3);
+  stop = false;
+  run(0);
+  EXPECT_EQ(solved, last);
+  EXPECT_EQ(sweep.by_p(), swept<double>(problem, trajectory, weights).p)
+      << "a flag that is not set changes nothing, nor does a sweep that was ended";
 }
 
 }  // namespace

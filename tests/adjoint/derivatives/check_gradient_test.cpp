@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 
+#include "tests/support/message_of.h"
 #include "tests/support/small_problems.h"
 
 namespace hbar {
@@ -113,6 +115,37 @@ TEST(CheckGradient, TakesTheSideOnWhichTheObjectiveIsSmooth) {
   const GradientCheckReport report =
       check_gradient({horizon, Objective(squared_final_position()), inputs});
   EXPECT_TRUE(report.passed()) << report.table();
+}
+
+TEST(CheckGradient, EndsWhenAskedWhereverItIs) {
+  std::atomic<bool> stop = false;
+  Problem problem = small_problem("bdf1");
+  SimulationOptions options = problem.horizon.options();
+  options.stop = &stop;
+  problem.horizon = problem.horizon.with(options);
+  int values_read = 0;
+  int last_value = 1;
+  problem.objective = Objective(user_term(
+      "watched",
+      [&](const TrajectoryValues& values) {
+        stop = ++values_read == last_value;
+        return 0.5 * values.q.squaredNorm();
+      },
+      [](const TrajectoryValues& values, TrajectoryPartials& partials) {
+        partials.q += values.q;
+      }));
+  const auto message = [&](int last) {
+    values_read = 0;
+    last_value = last;
+    stop = last == 0;
+    return testing::message_of<Interrupted>([&] { static_cast<void>(check_gradient(problem)); });
+  };
+  const int steps = problem.horizon.steps();
+  EXPECT_EQ(message(0), concat("simulation interrupted after 0 of ", steps, " steps"));
+  EXPECT_EQ(message(1), concat("backward sweep interrupted at stage ", steps, " of ", steps));
+  EXPECT_EQ(message(2), "gradient check interrupted");
+  EXPECT_EQ(message(50), "gradient check interrupted");
+  EXPECT_EQ(message(-1), "") << "never set";
 }
 
 TEST(CheckGradient, PrintsATableWithItsVerdicts) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/chart.h"
@@ -228,6 +230,25 @@ TEST_P(GradientOfEveryIntegrator, NeedsNoNewFactorsOnASmoothMotion) {
   EXPECT_GT(gradient.value, 0.0);
   EXPECT_EQ(sweep.refactorized(), 0);
   EXPECT_LT(sweep.worst_residual(), 1e-14);
+}
+
+TEST(AdjointSweep, EndsWhenAskedAndIsUnchangedByAFlagThatIsNotSet) {
+  std::atomic<bool> stop = false;
+  const Horizon plain = make_horizon(testing::double_pendulum(), "bdf2", 0.01, 20);
+  SimulationOptions options = plain.options();
+  options.stop = &stop;
+  const Horizon watched = plain.with(options);
+  const Inputs inputs = random_inputs(plain, 3);
+  const Trajectory trajectory = simulate(watched, inputs).trajectory();
+  const Objective objective(squared_variables());
+  const Gradient found = gradient(watched, trajectory, objective);
+  const Gradient expected = gradient(plain, simulate(plain, inputs).trajectory(), objective);
+  EXPECT_EQ(flatten(found), flatten(expected));
+  EXPECT_EQ(found.value, expected.value);
+  stop = true;
+  EXPECT_EQ(
+      message_of<Interrupted>([&] { static_cast<void>(gradient(watched, trajectory, objective)); }),
+      "backward sweep interrupted at stage 21 of 21");
 }
 
 TEST(AdjointSweep, RefusesASingularBlock) {

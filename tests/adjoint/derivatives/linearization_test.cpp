@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "hbar/adjoint/derivatives/gradient.h"
 #include "hbar/adjoint/derivatives/tangent.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/solvers/linear/klu.h"
+#include "tests/support/message_of.h"
 #include "tests/support/small_problems.h"
 
 namespace hbar {
@@ -84,6 +87,22 @@ TEST_P(LinearizationOfEveryIntegrator, IsBlockBandedAndLowerTriangular) {
   // BDF1 couples three steps, BDF2 five; SDIRK2 two steps of two stages.
   const int expected = GetParam() == "bdf1" ? 3 : 5;
   EXPECT_LE(band, expected);
+}
+
+TEST(Linearization, EndsWhenAskedAndContinuesAfterwards) {
+  std::atomic<bool> stop = true;
+  const Problem problem = testing::small_problem("bdf1");
+  const Trajectory trajectory = simulate(problem.horizon, problem.inputs).trajectory();
+  SimulationOptions options = problem.horizon.options();
+  options.stop = &stop;
+  Linearizer linearizer(problem.horizon.with(options));
+  EXPECT_EQ(testing::message_of<Interrupted>(
+                [&] { static_cast<void>(linearizer.linearize(trajectory)); }),
+            concat("linearisation interrupted at stage 1 of ", trajectory.timeline.last_stage()));
+  stop = false;
+  Linearizer other(problem.horizon);
+  EXPECT_EQ((linearizer.linearize(trajectory).dg_dp - other.linearize(trajectory).dg_dp).norm(),
+            0.0);
 }
 
 TEST(Linearization, KeepsParametersToTheRowsTheyOwn) {

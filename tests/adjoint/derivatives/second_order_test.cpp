@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "hbar/adjoint/derivatives/tangent.h"
@@ -9,6 +10,7 @@
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/input_vector.h"
+#include "tests/support/message_of.h"
 #include "tests/support/small_problems.h"
 
 namespace hbar {
@@ -153,6 +155,38 @@ TEST(SecondOrder, WithoutCurvatureIsExactWhereTheMotionIsTheTarget) {
   const Gradient product = elsewhere.along(direction, solvers::HessianKind::kGaussNewton);
   EXPECT_GT(product.value, 0.0);
   EXPECT_GT(testing::relative_gap(flatten(product), flatten(elsewhere.along(direction))), 1e-3);
+}
+
+TEST(SecondOrder, EndsWhenAskedAndContinuesAfterwards) {
+  std::atomic<bool> stop = false;
+  const Problem problem = testing::small_problem("bdf1");
+  SimulationOptions options = problem.horizon.options();
+  options.stop = &stop;
+  const Horizon horizon = problem.horizon.with(options);
+  const Trajectory trajectory = simulate(horizon, problem.inputs).trajectory();
+  const TrajectoryPartials weights = problem.objective.partials(read_values(horizon, trajectory));
+  const Inputs direction = unflatten(some_direction(problem.inputs, 7), problem.inputs);
+  const int last = trajectory.timeline.last_stage();
+  SecondOrderSweep sweep(horizon);
+  const auto message = [&stop](const auto& call) {
+    stop = true;
+    std::string text = testing::message_of<Interrupted>(call);
+    stop = false;
+    return text;
+  };
+  EXPECT_EQ(message([&] { sweep.set_point(trajectory, weights); }),
+            concat("backward sweep interrupted at stage ", last, " of ", last));
+  sweep.set_point(trajectory, weights);
+  EXPECT_EQ(message([&] { sweep.push_forward(direction); }),
+            concat("second order: forward sweep interrupted at stage 1 of ", last));
+  EXPECT_THROW(static_cast<void>(sweep.product()), InvalidInput) << "there is no direction";
+  sweep.push_forward(direction);
+  EXPECT_EQ(message([&] { static_cast<void>(sweep.product()); }),
+            concat("backward sweep interrupted at stage ", last, " of ", last));
+  SecondOrderSweep other(problem.horizon);
+  other.set_point(trajectory, weights);
+  other.push_forward(direction);
+  EXPECT_EQ(flatten(sweep.product()), flatten(other.product()));
 }
 
 TEST(SecondOrder, RefusesADirectionOfAnotherShape) {

@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
+
+#include "tests/support/message_of.h"
 
 namespace hbar {
 namespace {
@@ -69,6 +73,26 @@ TEST_F(LoadProblem, OptionsWin) {
   EXPECT_EQ(load_problem(hinge(), options).problem.horizon.parameters()[0].name, "gravity.x");
   options.parameters = ParameterChoice::kAll;
   EXPECT_GT(load_problem(hinge(), options).problem.horizon.parameters().size(), 10);
+}
+
+TEST_F(LoadProblem, HandsMemoryFactorsAndTheStopFlagOn) {
+  std::atomic<bool> stop = false;
+  LoadOptions options;
+  options.keep_factors = false;
+  options.max_memory = 1e6;
+  options.stop = &stop;
+  const SimulationOptions given = load_problem(hinge(), options).problem.horizon.options();
+  EXPECT_FALSE(given.keep_factors);
+  EXPECT_EQ(given.max_memory, 1e6);
+  EXPECT_EQ(given.stop, &stop);
+  options.steps = 1'000'000;
+  EXPECT_THROW(static_cast<void>(load_problem(hinge(), options)), InvalidOption);
+  options.max_memory = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(load_problem(hinge(), options).problem.horizon.steps(), 1'000'000);
+  stop = true;
+  EXPECT_EQ(
+      testing::message_of<Interrupted>([&] { static_cast<void>(load_problem(hinge(), options)); }),
+      "scene.xml: loading interrupted at link 'a'");
 }
 
 TEST_F(LoadProblem, ObjectiveFollowsTheVariables) {

@@ -148,8 +148,8 @@ TrajectoryValues rates(double scale) {
 std::vector<std::vector<ValuePlace>> rate_groups() {
   std::vector<std::vector<ValuePlace>> groups;
   for (int k = 1; k <= 2; ++k) {
-    groups.push_back({{ValueField::kQdot, k, 0}, {ValueField::kQdot, k, 1},
-                      {ValueField::kQdot, k, 2}});
+    groups.push_back(
+        {{ValueField::kQdot, k, 0}, {ValueField::kQdot, k, 1}, {ValueField::kQdot, k, 2}});
   }
   return groups;
 }
@@ -190,8 +190,8 @@ TEST_F(CheckTerms, JudgesTermsNearSaturationRightly) {
       const TrajectoryValues values = rates(scale);
       const TermPointer right = largest_rate(beta);
       const TermCheck check = check_objective_term(*right, values);
-      EXPECT_TRUE(check.passed()) << check.gap << ' ' << check.slope << ' ' << check.second_gap << ' '
-                                  << check.second_slope;
+      EXPECT_TRUE(check.passed()) << check.gap << ' ' << check.slope << ' ' << check.second_gap
+                                  << ' ' << check.second_slope;
       EXPECT_TRUE(check_objective_term(*spoiled(right, 1.0, 1.0), values).passed());
       const TermCheck first = check_objective_term(*spoiled(right, 1.0 + 1e-5, 1.0), values);
       EXPECT_FALSE(first.passed());
@@ -201,7 +201,8 @@ TEST_F(CheckTerms, JudgesTermsNearSaturationRightly) {
   }
   // A second partial is judged where there is one worth the name.
   for (const double beta : {1.0, 4.0}) {
-    EXPECT_FALSE(check_objective_term(*spoiled(largest_rate(beta), 1.0, 1.001), rates(1.0)).passed());
+    EXPECT_FALSE(
+        check_objective_term(*spoiled(largest_rate(beta), 1.0, 1.001), rates(1.0)).passed());
   }
 }
 
@@ -215,16 +216,32 @@ TEST_F(CheckTerms, JudgesSteepTermsRightly) {
     EXPECT_FALSE(check_objective_term(*spoiled(right, 1.0, 1.001), values).passed()) << name;
   };
   both(
-      "tanh", [](auto x) { using std::tanh; return tanh(40.0 * x[0]) + x[1] * x[1]; }, rates(1.0));
+      "tanh",
+      [](auto x) {
+        using std::tanh;
+        return tanh(40.0 * x[0]) + x[1] * x[1];
+      },
+      rates(1.0));
   both(
-      "exponential", [](auto x) { using std::exp; return exp(60.0 * x[0] * x[0]); }, rates(1.0));
+      "exponential",
+      [](auto x) {
+        using std::exp;
+        return exp(60.0 * x[0] * x[0]);
+      },
+      rates(1.0));
   both(
       "barrier",
-      [](auto x) { using std::log; return -log(x[0] * x[0] + 1e-4) - log(1.0001 - x[1] * x[1]); },
+      [](auto x) {
+        using std::log;
+        return -log(x[0] * x[0] + 1e-4) - log(1.0001 - x[1] * x[1]);
+      },
       rates(1.0));
   both(
       "root",
-      [](auto x) { using std::sqrt; return sqrt(x[0] * x[0] + 1e-6) + sqrt(x[2] * x[2] + 1e-8); },
+      [](auto x) {
+        using std::sqrt;
+        return sqrt(x[0] * x[0] + 1e-6) + sqrt(x[2] * x[2] + 1e-8);
+      },
       rates(1.0));
 }
 

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "hbar/adjoint/trajectory/memory_estimate.h"
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 #include "tests/support/message_of.h"
@@ -40,14 +41,16 @@ TEST(Horizon, RefusesAHorizonThatWouldNotFit) {
   SimulationOptions options = options_of("bdf1", 0.1, 1'000'000'000);
   const std::string message =
       message_of<InvalidInput>([&] { make_horizon(testing::double_pendulum(), options); });
-  EXPECT_EQ(message,
-            "1000000000 steps of 2 coordinates take about 192 GB; the limit is 4 GB: take fewer "
-            "steps or raise max_memory");
+  EXPECT_EQ(
+      message,
+      "1000000000 steps of 2 coordinates and their gradient take about 364 GB; the limit is 4 "
+      "GB: take fewer steps or raise max_memory");
 }
 
 TEST(Horizon, DropsFactorsThatWouldNotFit) {
   SimulationOptions options = options_of("bdf1", 0.1, 10);
-  options.max_memory = 10 * 8.0 * (4.0 * 2 + 16.0) + 1.0;
+  const Horizon whole = make_horizon(testing::double_pendulum(), options);
+  options.max_memory = estimate_memory(whole).total(false);
   Horizon horizon = make_horizon(testing::double_pendulum(), options);
   EXPECT_TRUE(simulate(horizon, horizon.nominal_inputs()).trajectory().factors.empty());
 }

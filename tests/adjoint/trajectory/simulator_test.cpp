@@ -161,7 +161,7 @@ TEST(Simulator, StopsBeforeTheNextStepWhenAsked) {
   EXPECT_EQ(stopped.report().steps_done, 0);
   EXPECT_EQ(stopped.report().message, "simulation interrupted after 0 of 5 steps");
   EXPECT_EQ(stopped.partial().q.cols(), 1);
-  EXPECT_EQ(message_of<NumericalFailure>([&] { static_cast<void>(stopped.trajectory()); }),
+  EXPECT_EQ(message_of<Interrupted>([&] { static_cast<void>(stopped.trajectory()); }),
             "simulation interrupted after 0 of 5 steps");
   stop = false;
   EXPECT_TRUE(simulate(horizon, horizon.nominal_inputs()).converged());

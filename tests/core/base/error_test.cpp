@@ -23,6 +23,7 @@ TEST(EveryError, IsAnErrorWithItsMessage) {
   EXPECT_THROW(throw InvalidInput("a"), Error);
   EXPECT_THROW(throw IoError("b"), Error);
   EXPECT_THROW(throw NumericalFailure("c"), Error);
+  EXPECT_THROW(throw Interrupted("d"), Error);
   EXPECT_STREQ(InvalidInput("where: what").what(), "where: what");
 }
 

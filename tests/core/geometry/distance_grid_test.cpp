@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include "hbar/core/base/checksum.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/geometry/triangle_distance.h"
+#include "tests/support/message_of.h"
 #include "tests/support/solid_meshes.h"
 
 namespace hbar {
@@ -315,6 +317,15 @@ TEST(Checksum, IsFnv1a) {
   Checksum letters;
   letters.add(std::endian::native == std::endian::little ? "abcd" : "dcba");
   EXPECT_EQ(number.value(), letters.value());
+}
+
+TEST(DistanceGrid, EndsWhenAsked) {
+  std::atomic<bool> stop = true;
+  const TriangleMesh mesh = icosphere(1.0, 1);
+  EXPECT_EQ(testing::message_of<Interrupted>([&] { DistanceGrid(mesh, 4, &stop); }),
+            "distance grid interrupted at plane 1 of 11");
+  stop = false;
+  EXPECT_EQ(DistanceGrid(mesh, 4, &stop).bytes(), DistanceGrid(mesh, 4).bytes());
 }
 
 }  // namespace

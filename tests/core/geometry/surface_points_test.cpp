@@ -194,6 +194,32 @@ TEST(SurfacePoints, RefusesResolutionsThatAreTooSmall) {
   }
 }
 
+TEST(SurfacePoints, AreCountedBeforeTheyAreMade) {
+  for (const Sampling& sampling : every_sampling()) {
+    EXPECT_EQ(surface_point_count(sampling.shape, sampling.resolution), sampling.count)
+        << sampling.name;
+  }
+  EXPECT_EQ(surface_points(Cuboid{}, {.cuboid = {2, 2, 250'000}}).cols(), kMaxContactPoints);
+}
+
+TEST(SurfacePoints, RefusesMoreThanABodyMayHave) {
+  struct Case {
+    Shape shape;
+    SurfaceResolution resolution;
+    std::string count;
+  };
+  const std::vector<Case> cases = {{Cuboid{}, {.cuboid = {3000, 3000, 3000}}, "5.3964e+07"},
+                                   {Cuboid{}, {.cuboid = {2, 2, 250'001}}, "1e+06"},
+                                   {Sphere{}, {.sphere = {100'000, 100'000}}, "1e+10"},
+                                   {Cylinder{}, {.cylinder = {2'000'000'000, 2}}, "8e+09"},
+                                   {Capsule{}, {.capsule = {1000, 2000}}, "2e+06"}};
+  for (const Case& c : cases) {
+    EXPECT_EQ(
+        message_of<InvalidInput>([&] { static_cast<void>(surface_points(c.shape, c.resolution)); }),
+        "surface_points: the resolution gives " + c.count + " points; a body has at most 1000000");
+  }
+}
+
 TEST(SurfacePointRate, RefusesASizeThatIsNotThere) {
   for (const int k : {-1, 1}) {
     EXPECT_EQ(message_of<InvalidInput>([k] {

@@ -18,6 +18,14 @@ std::vector<int> path(const Tree& tree, int i) {
   return out;
 }
 
+std::vector<CoordinateRange> ancestors(const Tree& tree, int i) {
+  std::vector<CoordinateRange> out;
+  for (const CoordinateRange& range : tree.ancestors(i)) {
+    out.push_back(range);
+  }
+  return out;
+}
+
 class EveryRandomTree : public ::testing::TestWithParam<unsigned> {
  protected:
   const Model model = testing::random_model(GetParam());
@@ -53,7 +61,7 @@ TEST_P(EveryRandomTree, ListsParentsBeforeChildrenAndCoordinatesInFileOrder) {
   EXPECT_EQ(link, model.link_count());
 }
 
-TEST_P(EveryRandomTree, KnowsTheCoordinatesAboveANodeAsMaximalAscendingRanges) {
+TEST_P(EveryRandomTree, KnowsTheCoordinatesAboveANodeAsMaximalDescendingRanges) {
   for (int i = 0; i < tree.node_count(); ++i) {
     std::set<int> expected;
     for (const int above : path(tree, i)) {
@@ -63,11 +71,11 @@ TEST_P(EveryRandomTree, KnowsTheCoordinatesAboveANodeAsMaximalAscendingRanges) {
       }
     }
     std::set<int> found;
-    int last_end = -1;
+    int last_begin = tree.dof() + 1;
     for (const CoordinateRange& range : tree.ancestors(i)) {
       EXPECT_LT(range.begin, range.end);
-      EXPECT_GT(range.begin, last_end) << "ranges that touch are one";
-      last_end = range.end;
+      EXPECT_LT(range.end, last_begin) << "ranges that touch are one";
+      last_begin = range.begin;
       for (int c = range.begin; c < range.end; ++c) {
         found.insert(c);
       }
@@ -95,11 +103,28 @@ TEST(Tree, MakesOneNodeOfAFixedJointAndAChainOfOthers) {
   EXPECT_EQ(tree.add_joint(Free3dExpJoint{}, 0, 1), 4);
   EXPECT_EQ(tree.dof(), 6);
   EXPECT_EQ(tree.node(4).motion, MotionKind::kExponential);
-  EXPECT_EQ(tree.ancestors(4), (std::vector<CoordinateRange>{{0, 3}}));
+  EXPECT_EQ(ancestors(tree, 4), (std::vector<CoordinateRange>{{0, 3}}));
   EXPECT_EQ(tree.add_joint(RevoluteJoint{}, 0, 2), 5);
   EXPECT_TRUE(tree.ancestors(5).empty());
   EXPECT_EQ(tree.add_joint(RevoluteJoint{}, 4, 3), 6);
-  EXPECT_EQ(tree.ancestors(6), (std::vector<CoordinateRange>{{0, 6}}));
+  EXPECT_EQ(ancestors(tree, 6), (std::vector<CoordinateRange>{{0, 6}}));
+}
+
+TEST(Tree, OfASpineWithRibsTakesMemoryInProportionToItsNodes) {
+  // Every rib splits the spine's coordinates: with a list of its own, each of these nodes would
+  // have thousands of ranges.
+  Tree tree;
+  constexpr int kSpine = 50'000;
+  int spine = -1;
+  for (int i = 0; i < kSpine; ++i) {
+    const int below = tree.add_joint(RevoluteJoint{}, spine, 2 * i);
+    tree.add_joint(RevoluteJoint{}, spine, 2 * i + 1);
+    spine = below;
+  }
+  const std::vector<CoordinateRange> above = ancestors(tree, spine);
+  ASSERT_EQ(above.size(), static_cast<std::size_t>(kSpine - 1));
+  EXPECT_EQ(above.front(), (CoordinateRange{2 * kSpine - 4, 2 * kSpine - 3}));
+  EXPECT_EQ(above.back(), (CoordinateRange{0, 1}));
 }
 
 }  // namespace

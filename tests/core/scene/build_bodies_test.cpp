@@ -8,6 +8,7 @@
 #include "hbar/core/scene/read_mesh.h"
 #include "hbar/core/scene/spread_vertices.h"
 #include "tests/core/scene/scene_testing.h"
+#include "tests/support/solid_meshes.h"
 #include "tests/support/temporary_folder.h"
 
 namespace hbar::scene {
@@ -200,6 +201,23 @@ TEST_F(MadeBodies, RefusesFilesOfSomethingElse) {
                 ": cannot be opened: No such file or directory");
   EXPECT_EQ(refusal("<body type=\"mesh\" filename=\"wedge.obj\" contacts=\"bad.txt\"/>"),
             "a.xml:5: <body contacts=\"bad.txt\">: bad.txt:2: found 2 words; a point is x y z");
+}
+
+TEST_F(MadeBodies, RefusesAChoiceOfPointsThatWouldTakeMinutes) {
+  const TriangleMesh ball = icosphere(1.0, 6);
+  {
+    std::ofstream out(folder_ / "ball.obj");
+    for (const Eigen::Vector3d& x : ball.vertices) {
+      out << "v " << x[0] << ' ' << x[1] << ' ' << x[2] << '\n';
+    }
+    for (const std::array<int, 3>& corner : ball.triangles) {
+      out << "f " << corner[0] + 1 << ' ' << corner[1] + 1 << ' ' << corner[2] + 1 << '\n';
+    }
+  }
+  EXPECT_EQ(
+      refusal("<body type=\"mesh\" filename=\"ball.obj\" contact_count=\"30000\"/>"),
+      "a.xml:5: <body contact_count=\"30000\">: of the 40962 vertices of ball.obj at most 24412 "
+      "can be chosen; give fewer, or the points in a file: contacts");
 }
 
 TEST(BuiltBodies, AreFoundByName) {

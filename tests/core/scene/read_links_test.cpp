@@ -218,6 +218,31 @@ const std::vector<BadScene> kRefusedLinks = {
      scene_with_body("<body type=\"cuboid\" size=\"1 1 1\" general_contact_resolution=\"1 2 2\"/>"),
      "bad.xml:5: <body general_contact_resolution=\"1 2 2\">: out of range; "
      "general_contact_resolution takes 3 whole numbers >= 2"},
+    {"too many points of a cuboid",
+     scene_with_body(
+         "<body type=\"cuboid\" size=\"1 1 1\" general_contact_resolution=\"3000 3000 3000\"/>"),
+     "bad.xml:5: <body general_contact_resolution=\"3000 3000 3000\">: that makes 5.3964e+07 "
+     "contact points; a body has at most 1000000"},
+    {"too many points of a ball",
+     scene_with_body(
+         "<body type=\"sphere\" radius=\"1\" general_contact_resolution=\"2000 1000\"/>"),
+     "bad.xml:5: <body general_contact_resolution=\"2000 1000\">: that makes 2e+06 contact points; "
+     "a body has at most 1000000"},
+    {"too many points of a cylinder",
+     scene_with_body("<body type=\"cylinder\" radius=\"1\" length=\"1\" "
+                     "general_contact_angle_resolution=\"2000000000\"/>"),
+     "bad.xml:5: <body general_contact_angle_resolution=\"2000000000\">: that makes 1.2e+10 "
+     "contact points; a body has at most 1000000"},
+    {"too many points of a capsule",
+     scene_with_body("<body type=\"capsule\" radius=\"1\" length=\"1\" "
+                     "general_contact_resolution=\"2000 1000\"/>"),
+     "bad.xml:5: <body general_contact_resolution=\"2000 1000\">: that makes 2e+06 contact points; "
+     "a body has at most 1000000"},
+    {"too many vertices",
+     scene_with_body("<body type=\"mesh\" filename=\"a.obj\" contact_count=\"1000001\"/>"),
+     "bad.xml:5: <body contact_count=\"1000001\">: out of range; contact_count takes 1 whole "
+     "number "
+     "from 1 to 1000000"},
     {"visual of a solid",
      scene_with_body("<body type=\"sphere\" radius=\"1\"><visual mesh=\"a.obj\"/></body>"),
      "bad.xml:5: <visual>: stands in a body that is not abstract; only those have it"},

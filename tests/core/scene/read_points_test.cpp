@@ -44,6 +44,8 @@ TEST(ReadContacts, RefusesWithTheWholeMessage) {
         "bad:1: the file begins with the number of points, alone in its line"},
        {"broken count", "1.5\n",
         "bad:1: \"1.5\" is not a whole number; the file begins with the number of points"},
+       {"more points than are allowed", "1000001\n1 2 3\n",
+        "bad:1: the file has 1000001 points; at most 1000000 are allowed"},
        {"too few points", "3\n1 2 3\n", "bad:2: found 1 points; the first line says 3"},
        {"too many points", "0\n1 2 3\n", "bad:2: found 1 points; the first line says 0"},
        {"two numbers", "1\n1 2\n", "bad:2: found 2 words; a point is x y z"},

@@ -162,6 +162,12 @@ const std::vector<BadScene> kRefusedSections = {
          "<sensor><tactile body=\"b\" type=\"rect_array\" rect_pos0=\"0 0 0\" rect_pos1=\"1 1 0\" "
          "axis0=\"1 0 0\" axis1=\"1 0 0\" resolution=\"2 2\"/></sensor>"),
      "bad.xml:2: <tactile axis1=\"1 0 0\">: parallel to axis0; the two axes must not be parallel"},
+    {"sensor of too many points",
+     scene_with_section(
+         "<sensor><tactile body=\"b\" type=\"rect_array\" rect_pos0=\"0 0 0\" rect_pos1=\"1 1 0\" "
+         "axis0=\"1 0 0\" axis1=\"0 1 0\" resolution=\"2000 1000\"/></sensor>"),
+     "bad.xml:2: <tactile resolution=\"2000 1000\">: that makes 2e+06 points; a sensor has at most "
+     "1000000"},
     {"sensor whose axes do not reach",
      scene_with_section(
          "<sensor><tactile body=\"b\" type=\"rect_array\" rect_pos0=\"0 0 0\" rect_pos1=\"1 1 1\" "

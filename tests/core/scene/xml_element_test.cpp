@@ -101,12 +101,13 @@ const std::vector<BadScene> kRefusedElements = {
      "take a point, entries are separated by blanks); gravity takes 3 numbers"},
     {"not a whole number", scene_with_section("<solver_option max_iter=\"2.5\"/>"),
      "bad.xml:2: <solver_option max_iter=\"2.5\">: \"2.5\" is not a whole number; max_iter takes 1 "
-     "whole number >= 1"},
+     "whole number from 1 to 1000000"},
     {"overflowing count", scene_with_section("<solver_option max_iter=\"99999999999\"/>"),
      "bad.xml:2: <solver_option max_iter=\"99999999999\">: \"99999999999\" is too large or too "
-     "small; max_iter takes 1 whole number >= 1"},
+     "small; max_iter takes 1 whole number from 1 to 1000000"},
     {"no iteration", scene_with_section("<solver_option max_iter=\"0\"/>"),
-     "bad.xml:2: <solver_option max_iter=\"0\">: out of range; max_iter takes 1 whole number >= 1"},
+     "bad.xml:2: <solver_option max_iter=\"0\">: out of range; max_iter takes 1 whole number from "
+     "1 to 1000000"},
     {"unknown choice", scene_with_section("<option unit=\"inch\"/>"),
      "bad.xml:2: <option unit=\"inch\">: unknown unit; unit takes one of cm-g, m-kg"},
     {"not a flag",
