@@ -4,7 +4,8 @@
 #   tests/run.sh                 release build, checkers, tests, a stranger's project
 #   tests/run.sh --dev           and the same tests under address and undefined-behaviour sanitizers
 #   tests/run.sh --tsan          and under the thread sanitizer
-#   tests/run.sh --full          and all of it, without the optional components as well; the benchmarks
+#   tests/run.sh --full          and all of it, without the optional components as well; every
+#                                allocation of short runs of the command fails once; the benchmarks
 #                                are built
 #   tests/run.sh --no-install    install no packages
 #
@@ -20,7 +21,7 @@ for option in "$@"; do
     --tsan) presets="$presets tsan" ;;
     --full) full=yes ;;
     --no-install) install=no ;;
-    *) sed -n '2,11s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+    *) sed -n '2,12s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
   esac
 done
 [ "$full" = no ] || presets="release bare dev tsan"
@@ -36,7 +37,7 @@ left_out() {
       *) printf '%s build, ' "$preset" ;;
     esac
   done
-  echo "build of the benchmarks"
+  echo "every place of the fault injection, build of the benchmarks"
 }
 
 finish() {
@@ -87,6 +88,7 @@ for preset in $presets; do
   run_tests "$preset"
 done
 if [ "$full" = yes ]; then
+  step env HBAR_EVERY_FAULT=1 ctest --preset release -R Faults -j "$(nproc)" --timeout 7200
   step cmake --preset release -DHBAR_BUILD_BENCHMARKS=ON
   step cmake --build --preset release --parallel "$(nproc)" --target hbar_benchmarks
   step cmake --preset release -DHBAR_BUILD_BENCHMARKS=OFF

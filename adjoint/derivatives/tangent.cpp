@@ -139,7 +139,26 @@ Directions Directions::zero(const Horizon& horizon, Eigen::Index count) {
 TangentSweep::TangentSweep(const Horizon& horizon, solvers::SolverFactory factory)
     : horizon_(horizon), system_(horizon, std::move(factory)) {}
 
+namespace {
+
+void require_directions(const Horizon& horizon, const Directions& directions) {
+  const Model& model = horizon.model();
+  const auto require = [&](const char* name, const Eigen::MatrixXd& given, Eigen::Index rows) {
+    if (given.rows() != rows || given.cols() != directions.count()) {
+      throw InvalidInput(concat("tangent: the directions by ", name, " are ", given.rows(), " x ",
+                                given.cols(), "; they must be ", rows, " x ", directions.count()));
+    }
+  };
+  require("p", directions.p, horizon.parameters().size());
+  require("u", directions.u, Eigen::Index{model.control_count()} * horizon.steps());
+  require("q0", directions.q0, model.dof());
+  require("qdot0", directions.qdot0, model.dof());
+}
+
+}  // namespace
+
 Tangents TangentSweep::push_forward(const Trajectory& trajectory, const Directions& directions) {
+  require_directions(horizon_, directions);
   const Linearization& system = system_.update(trajectory);
   const Model& model = horizon_.model();
   const int n = model.dof();

@@ -44,9 +44,15 @@ class Transcription : public solvers::Nlp {
   [[nodiscard]] virtual const TrajectoryValues& trajectory_values(const Eigen::VectorXd& x) = 0;
 
   /// The simulation inputs that x stands for.
-  [[nodiscard]] Inputs inputs(const Eigen::VectorXd& x) const { return head_.inputs(x); }
+  [[nodiscard]] Inputs inputs(const Eigen::VectorXd& x) const {
+    require_size(x);
+    return head_.inputs(x);
+  }
   /// The design variables of x.                                                         [d]
-  [[nodiscard]] Eigen::VectorXd design(const Eigen::VectorXd& x) const { return head_.design(x); }
+  [[nodiscard]] Eigen::VectorXd design(const Eigen::VectorXd& x) const {
+    require_size(x);
+    return head_.design(x);
+  }
   [[nodiscard]] const TrajectoryProblem& problem() const { return problem_; }
   [[nodiscard]] const InputVariables& input_variables() const { return head_; }
   [[nodiscard]] const TranscriptionTimes& times() const { return times_; }

@@ -19,7 +19,7 @@ std::string study_line(const JobOptions& options) {
 std::string heading_line(const JobOptions& options) {
   std::string text = "job,outcome,objective";
   for (const std::string& column : options.columns) {
-    text += ',' + csv_cell(column);
+    text += ',' + scene::csv_cell(column);
   }
   return text + ",status,message";
 }
@@ -41,7 +41,7 @@ std::string job_line(int index, const JobResult& result, std::size_t columns) {
       text += scene::format_number(result.numbers[i]);
     }
   }
-  return text + ',' + csv_cell(result.status) + ',' + csv_cell(result.message);
+  return text + ',' + scene::csv_cell(result.status) + ',' + scene::csv_cell(result.message);
 }
 
 std::string job_table(const JobOptions& options,
@@ -56,30 +56,30 @@ std::string job_table(const JobOptions& options,
   return text;
 }
 
-std::pair<int, JobResult> read_job(const CsvRow& row, const JobOptions& options,
+std::pair<int, JobResult> read_job(const scene::CsvRow& row, const JobOptions& options,
                                    const std::string& file) {
   const std::size_t columns = options.columns.size();
   if (row.size() != kBefore + columns + kAfter) {
-    fail_at(
+    scene::fail_at(
         row.back(), file,
         concat("a line of ", row.size(), " cells; the heading has ", kBefore + columns + kAfter));
   }
-  const int index = integer_in(row[0], file);
+  const int index = scene::integer_in(row[0], file);
   if (index < 0 || index >= options.count) {
-    fail_at(row[0], file, concat("job ", index, " is not one of 0 to ", options.count - 1));
+    scene::fail_at(row[0], file, concat("job ", index, " is not one of 0 to ", options.count - 1));
   }
   JobResult result;
   const std::string& outcome = row[1].text;
   result.converged = outcome == "converged";
   result.failed = outcome == "failed";
   if (!result.converged && !result.failed && outcome != "ended") {
-    fail_at(row[1], file,
-            concat('"', scene::quotable(outcome), "\" is not converged, ended or failed"));
+    scene::fail_at(row[1], file,
+                   concat('"', scene::quotable(outcome), "\" is not converged, ended or failed"));
   }
   if (!result.failed) {
-    result.objective = number_in(row[2], file);
+    result.objective = scene::number_in(row[2], file);
     for (std::size_t i = 0; i < columns; ++i) {
-      result.numbers.push_back(number_in(row[kBefore + i], file));
+      result.numbers.push_back(scene::number_in(row[kBefore + i], file));
     }
   }
   result.status = row[kBefore + columns].text;
@@ -95,8 +95,8 @@ std::vector<std::optional<JobResult>> read_job_table(std::string_view text,
     throw InvalidInput(concat(file, ":1: \"", scene::quotable(first), "\", but this is \"",
                               study_line(options), "\"; give it a table of its own"));
   }
-  const std::vector<CsvRow> rows = parse_csv(text, file);
-  const std::vector<CsvRow> heading = parse_csv(heading_line(options), file);
+  const std::vector<scene::CsvRow> rows = scene::parse_csv(text, file);
+  const std::vector<scene::CsvRow> heading = scene::parse_csv(heading_line(options), file);
   std::vector<std::optional<JobResult>> results(static_cast<std::size_t>(options.count));
   for (std::size_t i = 0; i < heading[0].size(); ++i) {
     const std::string& expected = heading[0][i].text;

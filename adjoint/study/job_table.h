@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "hbar/adjoint/study/csv.h"
 #include "hbar/adjoint/study/job.h"
+#include "hbar/core/files/csv.h"
 
 namespace hbar::study {
 
@@ -24,7 +24,8 @@ namespace hbar::study {
 /// @param options  of its study
 /// @param file     for messages
 /// @throws InvalidInput that begins `file:line:column:`
-[[nodiscard]] std::pair<int, JobResult> read_job(const CsvRow& row, const JobOptions& options,
+[[nodiscard]] std::pair<int, JobResult> read_job(const scene::CsvRow& row,
+                                                 const JobOptions& options,
                                                  const std::string& file);
 
 /// The contents of a table of results.                                                 [count]

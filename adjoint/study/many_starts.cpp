@@ -153,7 +153,7 @@ class Worker {
       const int signal = WTERMSIG(status);
       return failed_job(concat("ended by signal ", signal, " (", ::strsignal(signal), ')'));
     }
-    const std::vector<CsvRow> rows = parse_csv(text_, options_.name);
+    const std::vector<scene::CsvRow> rows = scene::parse_csv(text_, options_.name);
     if (rows.size() != 1 || text_.back() != '\n') {
       return failed_job(concat("ended with code ", WEXITSTATUS(status), " and without a result"));
     }

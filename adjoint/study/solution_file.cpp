@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
-#include "hbar/adjoint/study/csv.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/atomic_file.h"
+#include "hbar/core/files/csv.h"
 #include "hbar/core/files/numbers.h"
 #include "hbar/core/files/result_file.h"
 #include "hbar/core/files/text_file.h"
@@ -33,10 +33,10 @@ std::string finite_number(double number, const std::string& of) {
 /// A solution as read, with the location of each name for error messages.
 struct SolutionText {
   Solution solution;
-  std::vector<CsvCell> variables;    // name cells
-  std::vector<CsvCell> constraints;  // name cells
-  CsvCell end;                       // of the last row
-  bool whole = false;                // the row "end" was reached
+  std::vector<scene::CsvCell> variables;    // name cells
+  std::vector<scene::CsvCell> constraints;  // name cells
+  scene::CsvCell end;                       // of the last row
+  bool whole = false;                       // the row "end" was reached
 };
 
 void append(Eigen::VectorXd& numbers, double number) {
@@ -45,55 +45,56 @@ void append(Eigen::VectorXd& numbers, double number) {
 }
 
 /// Reads one row by its first word.
-void read_solution_row(const CsvRow& row, const std::string& file, SolutionText& out) {
+void read_solution_row(const scene::CsvRow& row, const std::string& file, SolutionText& out) {
   const std::string& kind = row[0].text;
   const std::map<std::string, std::size_t> cells = {
       {"status", 2},   {"objective", 2},  {"mu", 2}, {"about", 3},
       {"variable", 5}, {"constraint", 3}, {"end", 3}};
   const auto known = cells.find(kind);
   if (known == cells.end()) {
-    fail_at(row[0], file, concat('"', scene::quotable(kind), "\" is nothing that a solution has"));
+    scene::fail_at(row[0], file,
+                   concat('"', scene::quotable(kind), "\" is nothing that a solution has"));
   }
   if (row.size() != known->second) {
-    fail_at(
+    scene::fail_at(
         row.back(), file,
         concat("\"", kind, "\" has ", row.size() - 1, " entries; it takes ", known->second - 1));
   }
   Solution& solution = out.solution;
   if (kind == "end") {
-    out.whole = integer_in(row[1], file) == static_cast<int>(out.variables.size()) &&
-                integer_in(row[2], file) == static_cast<int>(out.constraints.size());
+    out.whole = scene::integer_in(row[1], file) == static_cast<int>(out.variables.size()) &&
+                scene::integer_in(row[2], file) == static_cast<int>(out.constraints.size());
   } else if (kind == "status") {
     solution.status = row[1].text;
   } else if (kind == "objective") {
-    solution.objective = number_in(row[1], file);
+    solution.objective = scene::number_in(row[1], file);
   } else if (kind == "mu") {
-    solution.point.mu = number_in(row[1], file);
+    solution.point.mu = scene::number_in(row[1], file);
   } else if (kind == "about") {
     solution.about[row[1].text] = row[2].text;
   } else if (kind == "variable") {
     solution.variable_names.push_back(row[1].text);
     out.variables.push_back(row[1]);
-    append(solution.point.x, number_in(row[2], file));
-    append(solution.point.lower_multipliers, number_in(row[3], file));
-    append(solution.point.upper_multipliers, number_in(row[4], file));
+    append(solution.point.x, scene::number_in(row[2], file));
+    append(solution.point.lower_multipliers, scene::number_in(row[3], file));
+    append(solution.point.upper_multipliers, scene::number_in(row[4], file));
   } else {
     solution.constraint_names.push_back(row[1].text);
     out.constraints.push_back(row[1]);
-    append(solution.point.constraint_multipliers, number_in(row[2], file));
+    append(solution.point.constraint_multipliers, scene::number_in(row[2], file));
   }
 }
 
 SolutionText read_solution_text(const std::filesystem::path& path) {
   const std::string file = path.string();
-  const std::vector<CsvRow> rows = parse_csv(scene::read_text_file(path), file);
+  const std::vector<scene::CsvRow> rows = scene::parse_csv(scene::read_text_file(path), file);
   if (rows.empty() || rows[0].size() != 2 || rows[0][0].text != kFormat) {
     throw InvalidInput(
         concat(file, ":1: this is no solution, which begins with \"", kFormat, ",", kVersion, '"'));
   }
-  if (integer_in(rows[0][1], file) != kVersion) {
-    fail_at(rows[0][1], file,
-            concat("version ", rows[0][1].text, " of the format; known is ", kVersion));
+  if (scene::integer_in(rows[0][1], file) != kVersion) {
+    scene::fail_at(rows[0][1], file,
+                   concat("version ", rows[0][1].text, " of the format; known is ", kVersion));
   }
   SolutionText out;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -101,7 +102,7 @@ SolutionText read_solution_text(const std::filesystem::path& path) {
   }
   out.end = rows.back().back();
   if (!out.whole || rows.back()[0].text != "end") {
-    fail_at(
+    scene::fail_at(
         out.end, file,
         concat("this solution is not whole: after ", out.variables.size(), " variables and ",
                out.constraints.size(), " constraints there is no line \"end\" that counts them"));
@@ -110,20 +111,21 @@ SolutionText read_solution_text(const std::filesystem::path& path) {
 }
 
 /// Refuses names that are not the program's.
-void compare_names(const std::vector<CsvCell>& found, const std::vector<std::string>& expected,
-                   const char* what, const CsvCell& end, const std::string& file) {
+void compare_names(const std::vector<scene::CsvCell>& found,
+                   const std::vector<std::string>& expected, const char* what,
+                   const scene::CsvCell& end, const std::string& file) {
   for (std::size_t i = 0; i < std::min(found.size(), expected.size()); ++i) {
     if (found[i].text == expected[i]) {
       continue;
     }
-    fail_at(found[i], file,
-            concat("another program's solution: ", what, ' ', i, " is \"",
-                   scene::quotable(found[i].text), "\", not \"", expected[i], '"'));
+    scene::fail_at(found[i], file,
+                   concat("another program's solution: ", what, ' ', i, " is \"",
+                          scene::quotable(found[i].text), "\", not \"", expected[i], '"'));
   }
   if (found.size() != expected.size()) {
-    fail_at(found.size() > expected.size() ? found[expected.size()] : end, file,
-            concat("another program's solution: it has ", found.size(), ' ', what,
-                   "s, the program ", expected.size()));
+    scene::fail_at(found.size() > expected.size() ? found[expected.size()] : end, file,
+                   concat("another program's solution: it has ", found.size(), ' ', what,
+                          "s, the program ", expected.size()));
   }
 }
 
@@ -137,24 +139,24 @@ std::string solution_text(const Solution& solution) {
   check_count(point.upper_multipliers.size(), n, "multipliers of upper bounds");
   check_count(point.constraint_multipliers.size(), m, "multipliers of constraints");
 
-  std::string text = concat(kFormat, ',', kVersion, "\nstatus,", csv_cell(solution.status));
+  std::string text = concat(kFormat, ',', kVersion, "\nstatus,", scene::csv_cell(solution.status));
   text += "\nobjective" + finite_number(solution.objective, "objective");
   text += "\nmu" + finite_number(point.mu, "mu") + '\n';
   for (const auto& [key, value] : solution.about) {
-    text += "about," + csv_cell(key) + ',' + csv_cell(value) + '\n';
+    text += "about," + scene::csv_cell(key) + ',' + scene::csv_cell(value) + '\n';
   }
   text += "# variable, name, value, multiplier of its lower bound, of its upper bound\n";
   for (std::size_t i = 0; i < n; ++i) {
     const std::string& name = solution.variable_names[i];
     const auto row = static_cast<Eigen::Index>(i);
-    text += "variable," + csv_cell(name) + finite_number(point.x[row], name) +
+    text += "variable," + scene::csv_cell(name) + finite_number(point.x[row], name) +
             finite_number(point.lower_multipliers[row], name) +
             finite_number(point.upper_multipliers[row], name) + '\n';
   }
   text += "# constraint, name, multiplier\n";
   for (std::size_t i = 0; i < m; ++i) {
     const std::string& name = solution.constraint_names[i];
-    text += "constraint," + csv_cell(name) +
+    text += "constraint," + scene::csv_cell(name) +
             finite_number(point.constraint_multipliers[static_cast<Eigen::Index>(i)], name) + '\n';
   }
   return text + concat("end,", n, ',', m, '\n');

@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 
-#include "hbar/adjoint/study/csv.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/base/nearest_name.h"
+#include "hbar/core/files/csv.h"
 #include "hbar/core/files/numbers.h"
 
 namespace hbar::study {
@@ -63,28 +63,30 @@ std::vector<std::string> every_name(const TrajectoryNames& names) {
 }
 
 /// The place of each column but the first, at step 0.
-std::vector<ValuePlace> read_heading(const CsvRow& heading, const std::string& file,
+std::vector<ValuePlace> read_heading(const scene::CsvRow& heading, const std::string& file,
                                      const TrajectoryNames& names) {
   if (heading[0].text != "time") {
-    fail_at(heading[0], file,
-            concat("the first column is \"", scene::quotable(heading[0].text), "\", not time"));
+    scene::fail_at(
+        heading[0], file,
+        concat("the first column is \"", scene::quotable(heading[0].text), "\", not time"));
   }
   std::vector<ValuePlace> columns;
   for (std::size_t i = 1; i < heading.size(); ++i) {
     const std::string& name = heading[i].text;
     const std::vector<ValuePlace> found = meanings(name, names);
     if (found.empty()) {
-      fail_at(heading[i], file,
-              concat("unknown column \"", scene::quotable(name), "\"; ",
-                     unknown_name_hint(name, every_name(names))));
+      scene::fail_at(heading[i], file,
+                     concat("unknown column \"", scene::quotable(name), "\"; ",
+                            unknown_name_hint(name, every_name(names))));
     }
     if (found.size() > 1) {
-      fail_at(heading[i], file,
-              concat("\"", scene::quotable(name), "\" names more than one number of this model"));
+      scene::fail_at(
+          heading[i], file,
+          concat("\"", scene::quotable(name), "\" names more than one number of this model"));
     }
     for (const ValuePlace& earlier : columns) {
       if (earlier == found[0]) {
-        fail_at(heading[i], file, concat("\"", scene::quotable(name), "\" is there twice"));
+        scene::fail_at(heading[i], file, concat("\"", scene::quotable(name), "\" is there twice"));
       }
     }
     columns.push_back(found[0]);
@@ -135,20 +137,21 @@ class Controls {
   Eigen::MatrixXd u_;
 };
 
-int read_step(const CsvCell& cell, const std::string& file, const TimeGrid& grid, int last) {
-  const double time = number_in(cell, file);
+int read_step(const scene::CsvCell& cell, const std::string& file, const TimeGrid& grid, int last) {
+  const double time = scene::number_in(cell, file);
   const double steps = time / grid.h;
   const double nearest = std::round(steps);
   if (!(std::abs(steps - nearest) <= grid.tolerance)) {
-    fail_at(cell, file, concat("time ", cell.text, " is no multiple of the step ", grid.h));
+    scene::fail_at(cell, file, concat("time ", cell.text, " is no multiple of the step ", grid.h));
   }
   if (nearest < 0.0 || nearest > grid.steps) {
-    fail_at(cell, file,
-            concat("time ", cell.text, " is outside the simulation, 0 to ", grid.steps * grid.h));
+    scene::fail_at(
+        cell, file,
+        concat("time ", cell.text, " is outside the simulation, 0 to ", grid.steps * grid.h));
   }
   const int step = static_cast<int>(nearest);
   if (step <= last) {
-    fail_at(cell, file, concat("time ", cell.text, " does not come after the row before"));
+    scene::fail_at(cell, file, concat("time ", cell.text, " does not come after the row before"));
   }
   return step;
 }
@@ -178,7 +181,7 @@ std::string trajectory_csv(const TrajectoryNames& names, const TrajectoryValues&
       throw InvalidInput(concat("trajectory_csv: ", rows, " rows for ", list.size(), " names"));
     }
     for (const std::string& name : list) {
-      text += ',' + csv_cell(name);
+      text += ',' + scene::csv_cell(name);
     }
   }
   for (Eigen::Index k = 0; k < values.q.cols(); ++k) {
@@ -214,7 +217,7 @@ TrajectoryData read_trajectory_csv(std::string_view text, const std::string& fil
   if (!(grid.h > 0.0)) {
     throw InvalidInput(concat("read_trajectory_csv: the step is ", grid.h, ", but must be > 0"));
   }
-  const std::vector<CsvRow> rows = parse_csv(text, file);
+  const std::vector<scene::CsvRow> rows = scene::parse_csv(text, file);
   if (rows.empty()) {
     throw InvalidInput(file + ":1: an empty table; it begins with a heading");
   }
@@ -228,10 +231,10 @@ TrajectoryData read_trajectory_csv(std::string_view text, const std::string& fil
   std::vector<double> data;
   int last = -1;
   for (std::size_t r = 1; r < rows.size(); ++r) {
-    const CsvRow& row = rows[r];
+    const scene::CsvRow& row = rows[r];
     if (row.size() != rows[0].size()) {
-      fail_at(row.back(), file,
-              concat("a row of ", row.size(), " cells; the heading has ", rows[0].size()));
+      scene::fail_at(row.back(), file,
+                     concat("a row of ", row.size(), " cells; the heading has ", rows[0].size()));
     }
     last = read_step(row[0], file, grid, last);
     for (std::size_t i = 1; i < row.size(); ++i) {
@@ -240,10 +243,10 @@ TrajectoryData read_trajectory_csv(std::string_view text, const std::string& fil
       }
       ValuePlace place = columns[i - 1];
       place.step = last;
-      const double number = number_in(row[i], file);
+      const double number = scene::number_in(row[i], file);
       if (place.field == ValueField::kU) {
         if (last == 0) {
-          fail_at(row[i], file, "a control at time 0, before the first step");
+          scene::fail_at(row[i], file, "a control at time 0, before the first step");
         }
         controls.set(place.index, last, number);
         continue;

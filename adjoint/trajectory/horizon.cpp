@@ -117,6 +117,7 @@ Inputs Horizon::nominal_inputs() const {
 }
 
 std::shared_ptr<const Mechanism<double>> Horizon::mechanism(const Eigen::VectorXd& p) const {
+  require_in_range(parameters(), p);
   auto out = std::make_shared<Mechanism<double>>();
   apply_parameters<double>(model(), parameters(), p, *out);
   return out;

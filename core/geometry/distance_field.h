@@ -32,6 +32,9 @@ class DistanceField {
   /// Derivative of the Hessian along a direction.                                [3 x 3]
   [[nodiscard]] virtual Eigen::Matrix3d hessian_slope(const Eigen::Vector3d& x,
                                                       const Eigen::Vector3d& direction) const = 0;
+
+  /// Whether another field is known to be the same everywhere: by default, if it is this object.
+  [[nodiscard]] virtual bool same_as(const DistanceField& other) const { return this == &other; }
 };
 
 }  // namespace hbar

@@ -198,6 +198,14 @@ Eigen::Matrix3d DistanceGrid::hessian_slope(const Eigen::Vector3d& x,
   return slope;
 }
 
+bool DistanceGrid::same_as(const DistanceField& other) const {
+  const auto* grid = dynamic_cast<const DistanceGrid*>(&other);
+  return grid == this || (grid != nullptr && grid->nodes() == nodes() &&
+                          grid->state_.box.min() == state_.box.min() &&
+                          grid->state_.box.max() == state_.box.max() &&
+                          grid->state_.spline.coefficients() == state_.spline.coefficients());
+}
+
 std::string DistanceGrid::bytes() const {
   const std::vector<double>& coefficients = state_.spline.coefficients();
   std::string bytes(kMagic);

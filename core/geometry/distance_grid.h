@@ -53,6 +53,9 @@ class DistanceGrid final : public DistanceField {
   [[nodiscard]] Eigen::Matrix3d hessian_slope(const Eigen::Vector3d& x,
                                               const Eigen::Vector3d& direction) const override;
 
+  /// If the other is a grid of the same nodes, coefficients and mesh's box.
+  [[nodiscard]] bool same_as(const DistanceField& other) const override;
+
   /// The largest |φ − exact distance| at the centres of the cells (where a spline errs most) within
   /// two cells of the surface, length. Measured when the grid was made.
   [[nodiscard]] double max_error() const { return state_.max_error; }

@@ -51,6 +51,18 @@ struct Plane {
 /// What contact points are tested against.
 using ContactSurface = std::variant<OwnShape, Plane, std::shared_ptr<const DistanceField>>;
 
+/// Whether two surfaces are the same: distance fields by what they hold, so that those of one mesh
+/// that was loaded twice are.
+[[nodiscard]] inline bool same_surface(const ContactSurface& a, const ContactSurface& b) {
+  using Field = std::shared_ptr<const DistanceField>;
+  const auto* field = std::get_if<Field>(&a);
+  const auto* other = std::get_if<Field>(&b);
+  if (field == nullptr || other == nullptr || *field == nullptr || *other == nullptr) {
+    return a == b;
+  }
+  return (*field)->same_as(**other);
+}
+
 /// A declared contact: the points of one body against the signed distance of another, or of the
 /// world. A ball touches a plane with its deepest point, and likewise a body's own shape if the
 /// ball has no contact points; all other bodies touch with Body::contact_points.
@@ -66,7 +78,13 @@ struct Contact {
   bool adhesion = true;  ///< f_n may pull when damping outweighs stiffness; else it is cut off at 0
   Reaction reaction = Reaction::kPoint;
 
-  friend bool operator==(const Contact&, const Contact&) = default;
+  friend bool operator==(const Contact& a, const Contact& b) {
+    return a.name == b.name && a.link == b.link && a.other == b.other &&
+           same_surface(a.surface, b.surface) && a.coefficients == b.coefficients &&
+           a.normal_law == b.normal_law && a.friction_law == b.friction_law &&
+           a.friction_width == b.friction_width && a.adhesion == b.adhesion &&
+           a.reaction == b.reaction;
+  }
 };
 
 /// Points on a body that measure the contact force there and exert none.
@@ -79,8 +97,11 @@ struct TactileSensor {
   ContactCoefficients coefficients = {};
 
   friend bool operator==(const TactileSensor& a, const TactileSensor& b) {
-    return a.name == b.name && a.link == b.link && a.points == b.points && a.axis0 == b.axis0 &&
-           a.axis1 == b.axis1 && a.coefficients == b.coefficients;
+    const auto same = [](const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xd& y) {
+      return x.cols() == y.cols() && x == y;  // Eigen compares matrices of one size only
+    };
+    return a.name == b.name && a.link == b.link && same(a.points, b.points) &&
+           same(a.axis0, b.axis0) && same(a.axis1, b.axis1) && a.coefficients == b.coefficients;
   }
 };
 

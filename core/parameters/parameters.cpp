@@ -188,6 +188,9 @@ void require_parameters_of(const Model& model, const ParameterSet& set) {
 }
 
 void require_in_range(const ParameterSet& set, const Eigen::VectorXd& p) {
+  if (p.size() != set.size()) {
+    throw InvalidInput(concat("p has ", p.size(), " entries; the parameter set has ", set.size()));
+  }
   for (int i = 0; i < set.size(); ++i) {
     const ParameterRange range = row_of(set[i].kind).range;
     if (range == ParameterRange::kNonNegative && p[i] < 0.0) {

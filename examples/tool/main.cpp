@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <variant>
 
 #include "arguments.h"
 #include "examples/common/process.h"
 #include "gradient_solver.h"
+#include "hbar/core/files/numbers.h"
 #include "inputs.h"
 #include "outputs.h"
 #include "results.h"
@@ -30,6 +32,18 @@ void check_outputs(const Arguments& arguments, const LoadedProblem& loaded) {
   check_output(arguments.out, loaded.files);
   check_output(arguments.csv, loaded.files);
   check_distinct("--out", arguments.out, "--csv", arguments.csv);
+  if (arguments.csv) {
+    std::vector<std::string> columns = csv_columns(loaded.problem.horizon.model());
+    std::sort(columns.begin(), columns.end());
+    const auto twice = std::adjacent_find(columns.begin(), columns.end());
+    if (twice != columns.end()) {
+      throw ProgramError(
+          ExitCode::kBadScene,
+          fmt::format("--csv: two columns would be called \"{}\"; rename a joint, an "
+                      "end effector or a sensor",
+                      scene::quotable(*twice)));
+    }
+  }
 }
 
 std::string status_word(RolloutStatus status) {
@@ -74,6 +88,9 @@ Results run(const LoadedProblem& loaded, bool with_gradient) {
   }
   try {
     out.gradient = gradient_of(loaded, trajectory);
+  } catch (const Interrupted& error) {
+    out.status = "interrupted";
+    out.message = error.what();
   } catch (const NumericalFailure& error) {
     out.status = "gradient_failed";
     out.message = error.what();

@@ -34,6 +34,8 @@ struct Results {
                                      const GradientCheckReport& report);
 
 /// Time, q, qdot, variables and sensor readings of every step as CSV with a header, 17 digits each.
+/// The heading of results_csv.
+[[nodiscard]] std::vector<std::string> csv_columns(const Model& model);
 [[nodiscard]] std::string results_csv(const LoadedProblem& loaded, const Results& results);
 
 }  // namespace hbar::tool

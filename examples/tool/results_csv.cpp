@@ -1,25 +1,31 @@
 #include <fmt/format.h>
 
+#include "hbar/core/files/csv.h"
 #include "labels.h"
 #include "results.h"
 
 namespace hbar::tool {
 
+std::vector<std::string> csv_columns(const Model& model) {
+  std::vector<std::string> columns = {"time"};
+  for (const std::string& name : coordinate_names(model)) {
+    columns.push_back("q." + name);
+  }
+  for (const std::string& name : coordinate_names(model)) {
+    columns.push_back("qdot." + name);
+  }
+  for (const std::vector<std::string>& names : {variable_names(model), tactile_names(model)}) {
+    columns.insert(columns.end(), names.begin(), names.end());
+  }
+  return columns;
+}
+
 std::string results_csv(const LoadedProblem& loaded, const Results& results) {
   const Model& model = loaded.problem.horizon.model();
   const TrajectoryValues& values = results.values;
-  std::string text = "time";
-  for (const std::string& name : coordinate_names(model)) {
-    text += ",q." + name;
-  }
-  for (const std::string& name : coordinate_names(model)) {
-    text += ",qdot." + name;
-  }
-  for (const std::string& name : variable_names(model)) {
-    text += "," + name;
-  }
-  for (const std::string& name : tactile_names(model)) {
-    text += "," + name;
+  std::string text;
+  for (const std::string& column : csv_columns(model)) {
+    text += (text.empty() ? "" : ",") + scene::csv_cell(column);
   }
   text += '\n';
   constexpr Eigen::Index kDigits = 24;  // the longest number with its separator

@@ -95,16 +95,27 @@ bool right_sign(Activity activity, double multiplier) {
   return activity == Activity::kEqual || (activity == Activity::kLower) == (multiplier < 0.0);
 }
 
+void require_sizes(const ScaledNlp& program, const Eigen::VectorXd& x, const Eigen::VectorXd& c,
+                   const char* where) {
+  if (x.size() != program.variable_count() || c.size() != program.constraint_count()) {
+    throw InvalidInput(concat(where, ": ", x.size(), " variables and ", c.size(),
+                              " constraints or multipliers; the program has ",
+                              program.variable_count(), " and ", program.constraint_count()));
+  }
+}
+
 }  // namespace
 
 ActiveSet find_active_set(const ScaledNlp& program, const Eigen::VectorXd& x,
                           const Eigen::VectorXd& c, double tolerance) {
+  require_sizes(program, x, c, "find_active_set");
   return {activities(x, program.scaled_lower(), program.scaled_upper(), tolerance),
           activities(c, program.scaled_constraint_lower(), program.scaled_constraint_upper(),
                      tolerance)};
 }
 
 Eigen::VectorXd lagrangian_gradient(ScaledNlp& program, const PrimalDualPoint& point) {
+  require_sizes(program, point.x, point.constraint_multipliers, "lagrangian_gradient");
   const SparsityPattern& pattern = program.jacobian_pattern();
   Eigen::VectorXd gradient(program.variable_count());
   Eigen::VectorXd jacobian(static_cast<Eigen::Index>(pattern.rows.size()));
@@ -123,6 +134,7 @@ MultiplierEstimate estimate_multipliers(ScaledNlp& program, const Eigen::VectorX
                                         double tolerance) {
   const Eigen::Index n = program.variable_count();
   const Eigen::Index m = program.constraint_count();
+  require_sizes(program, x, Eigen::VectorXd::Zero(m), "estimate_multipliers");
   MultiplierEstimate result;
   result.point = {x, Eigen::VectorXd::Zero(m), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   Eigen::VectorXd c(m);

@@ -36,6 +36,8 @@ bool NlpEvaluator::evaluate(State& state, int& count, const Call& call) {
     }
   } catch (const EvaluationError& error) {
     last_failure_ = error.what();
+  } catch (const Interrupted& error) {  // by the optimiser's own flag, which it looks at itself
+    last_failure_ = error.what();
   } catch (...) {
     exception_ = std::current_exception();
     return false;

@@ -73,7 +73,10 @@ TEST_F(Examples, EverySceneSimulatesAndItsGradientIsConfirmed) {
     SCOPED_TRACE(entry.path());
     const Outcome info = hbar({"info", entry.path()});
     EXPECT_EQ(info.code, 0);
-    EXPECT_EQ(info.err, "");
+    // Limits of some scenes are for their optimisations.
+    EXPECT_EQ(std::count(info.err.begin(), info.err.end(), '\n'),
+              info.err.find("it bounds optimisations alone") == std::string::npos ? 0 : 1)
+        << info.err;
     const Outcome check = hbar({"check", entry.path(), "--steps", "10"});
     EXPECT_EQ(check.code, 0) << check.out << check.err;
     ++scenes;

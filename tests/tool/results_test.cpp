@@ -312,5 +312,38 @@ INSTANTIATE_TEST_SUITE_P(Two, GoldenCommand,
                                                "body.",
                                                {"mass", "inertia.x", "inertia.y", "inertia.z"}}));
 
+/// A free body and, below it, a hinge.
+std::string named_scene(const std::string& free, const std::string& hinge) {
+  return "<redmax><option gravity=\"0 0 -9.81\" unit=\"m-kg\"/><robot><link name=\"a\"><joint "
+         "name=\"" +
+         free +
+         "\" type=\"free2d\"/><body name=\"b\" type=\"sphere\" radius=\"1\"/><link "
+         "name=\"c\"><joint "
+         "name=\"" +
+         hinge +
+         "\" type=\"revolute\" axis=\"1 0 0\"/><body name=\"d\" type=\"sphere\" "
+         "radius=\"1\"/></link></link></robot></redmax>";
+}
+
+TEST_F(ToolResults, ColumnsOfAnyNameAreQuoted) {
+  const std::string file = write("n.xml", named_scene("f", "j,k &quot;x&quot;"));
+  ASSERT_EQ(hbar({"simulate", file, "--steps", "1", "--csv", path("c.csv")}).code, 0);
+  const std::string text = read_file(path("c.csv"));
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "time,q.f.x,q.f.y,q.f.angle,\"q.j,k \"\"x\"\"\",qdot.f.x,qdot.f.y,qdot.f.angle,"
+            "\"qdot.j,k \"\"x\"\"\"");
+}
+
+TEST_F(ToolResults, TwoColumnsOfOneNameAreRefused) {
+  const std::string file = write("n.xml", named_scene("j", "j.x"));
+  const Outcome outcome = hbar({"simulate", file, "--steps", "1", "--csv", path("c.csv")});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(
+      outcome.err,
+      "hbar: --csv: two columns would be called \"q.j.x\"; rename a joint, an end effector or a "
+      "sensor\n");
+  EXPECT_EQ(hbar({"simulate", file, "--steps", "1", "--out", path("r.json")}).code, 0);
+}
+
 }  // namespace
 }  // namespace hbar::tool

@@ -116,6 +116,19 @@ TEST_F(Contacts, WithAMeshShareItsDistance) {
   EXPECT_GT(field->sample(Eigen::Vector3d::Constant(0.2)).distance, 0.1);
 }
 
+TEST_F(Contacts, WithAMeshThatIsLoadedTwiceAreTheSame) {
+  const auto made = [this](const std::string& body) {
+    return contacts("<contact><general_primitive_contact general_body=\"" + body +
+                    "\" primitive_body=\"m\"/></contact>")[0];
+  };
+  const hbar::Contact once = made("d");
+  const hbar::Contact again = made("d");
+  EXPECT_NE(std::get<std::shared_ptr<const DistanceField>>(once.surface),
+            std::get<std::shared_ptr<const DistanceField>>(again.surface));
+  EXPECT_EQ(once, again);
+  EXPECT_FALSE(once == made("e"));
+}
+
 TEST_F(Contacts, SayWhereTheModelRefusesThem) {
   EXPECT_EQ(refusal(scene("<contact><ground_contact body=\"p\"/></contact>")),
             "a.xml:2: <ground_contact>: contact 'p-ground': body 'p' has no contact points (see "

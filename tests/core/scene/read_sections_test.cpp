@@ -81,7 +81,7 @@ TEST(Sections, ReadVariablesSensorsAndVirtualShapes) {
 
 TEST(Sections, NoticeAWidthThatHasNoEffect) {
   const Scene scene = read_scene_text(
-      scene_with_section("<ground/><contact><ground_contact body=\"b\" friction_width=\"1\"/>"
+      scene_with_section("<ground/><contact><ground_contact body=\"b\" kn=\"1\" friction_width=\"1\"/>"
                          "</contact>"),
       "a.xml");
   EXPECT_EQ(scene.description.contacts.at(0).friction_width, std::nullopt);

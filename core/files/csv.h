@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace hbar::study {
+namespace hbar::scene {
 
 /// A cell of a table and where it stands.
 struct CsvCell {
@@ -16,7 +16,9 @@ struct CsvCell {
 using CsvRow = std::vector<CsvCell>;
 
 /// The rows of a table of comma-separated values (RFC 4180): a cell in quotes may hold commas, line
-/// ends and doubled quotes. Empty lines and lines that begin with # are left out.
+/// ends and doubled quotes. Empty lines and lines that begin with # are left out, as is a byte
+/// order mark. Where the first row has no comma outside quotes but semicolons, those separate, as
+/// in tables from spreadsheets of many countries; numbers have a decimal point all the same.
 ///
 /// @param text  the file's bytes
 /// @param file  its name for messages
@@ -38,4 +40,4 @@ using CsvRow = std::vector<CsvCell>;
 /// @throws InvalidInput always: `file:line:column: reason`
 [[noreturn]] void fail_at(const CsvCell& cell, const std::string& file, const std::string& reason);
 
-}  // namespace hbar::study
+}  // namespace hbar::scene

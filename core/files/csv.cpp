@@ -1,4 +1,4 @@
-#include "hbar/adjoint/study/csv.h"
+#include "hbar/core/files/csv.h"
 
 #include <algorithm>
 #include <optional>
@@ -6,7 +6,7 @@
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/numbers.h"
 
-namespace hbar::study {
+namespace hbar::scene {
 namespace {
 
 std::string_view without_blanks(std::string_view text) {
@@ -19,7 +19,11 @@ std::string_view without_blanks(std::string_view text) {
 /// Reads a text cell by cell and keeps track of its position.
 class CsvReader {
  public:
-  CsvReader(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+  CsvReader(std::string_view text, const std::string& file) : text_(text), file_(file) {
+    if (text_.starts_with("\xef\xbb\xbf")) {
+      text_.remove_prefix(3);
+    }
+  }
 
   std::vector<CsvRow> rows() {
     std::vector<CsvRow> rows;
@@ -28,6 +32,9 @@ class CsvReader {
       if (text_[at_] == '#' || without_blanks(text_.substr(at_, end - at_)).empty()) {
         at_ = end;
       } else {
+        if (rows.empty()) {
+          separator_ = separator();
+        }
         rows.push_back(row());
       }
       leave_line();
@@ -36,6 +43,19 @@ class CsvReader {
   }
 
  private:
+  /// What separates the cells of the row that begins here.
+  [[nodiscard]] char separator() const {
+    bool quoted = false;
+    char found = ',';
+    for (const char c : text_.substr(at_)) {
+      quoted = quoted != (c == '"');
+      if (!quoted && (c == '\n' || c == ',')) {
+        return c == ',' ? ',' : found;
+      }
+      found = !quoted && c == ';' ? ';' : found;
+    }
+    return found;
+  }
   /// Where the current line's text ends: at \n, at \r\n or at the end of the text.
   [[nodiscard]] std::size_t line_end() const {
     const std::size_t found = std::min(text_.find('\n', at_), text_.size());
@@ -49,7 +69,7 @@ class CsvReader {
   CsvRow row() {
     CsvRow row;
     row.push_back(cell());
-    while (at_ < text_.size() && text_[at_] == ',') {
+    while (at_ < text_.size() && text_[at_] == separator_) {
       ++at_;
       row.push_back(cell());
     }
@@ -60,7 +80,7 @@ class CsvReader {
     if (at_ < text_.size() && text_[at_] == '"') {
       quoted(cell);
     } else {
-      const std::size_t end = std::min(text_.find(',', at_), line_end());
+      const std::size_t end = std::min(text_.find(separator_, at_), line_end());
       cell.text = without_blanks(text_.substr(at_, end - at_));
       at_ = end;
     }
@@ -84,13 +104,14 @@ class CsvReader {
       fail_at(cell, file_, "a quote is opened here and not closed");
     }
     ++at_;
-    if (at_ < line_end() && text_[at_] != ',') {
+    if (at_ < line_end() && text_[at_] != separator_) {
       fail_at(cell, file_, "text after a closing quote; a quote within a cell is written twice");
     }
   }
 
   std::string_view text_;
   const std::string& file_;
+  char separator_ = ',';
   std::size_t at_ = 0;
   std::size_t begin_ = 0;  // of the current line
   int line_ = 1;
@@ -103,7 +124,7 @@ std::vector<CsvRow> parse_csv(std::string_view text, const std::string& file) {
 }
 
 std::string csv_cell(std::string_view text) {
-  const bool plain = text.find_first_of(",\"\r\n") == std::string_view::npos &&
+  const bool plain = text.find_first_of(",;\"\r\n") == std::string_view::npos &&
                      without_blanks(text).size() == text.size() && text.substr(0, 1) != "#";
   if (plain) {
     return std::string(text);
@@ -120,7 +141,7 @@ std::string csv_cell(std::string_view text) {
 
 double number_in(const CsvCell& cell, const std::string& file) {
   std::string reason;
-  const std::optional<double> number = scene::parse_number(cell.text, reason);
+  const std::optional<double> number = parse_number(cell.text, reason);
   if (!number) {
     fail_at(cell, file, reason);
   }
@@ -129,7 +150,7 @@ double number_in(const CsvCell& cell, const std::string& file) {
 
 int integer_in(const CsvCell& cell, const std::string& file) {
   std::string reason;
-  const std::optional<int> number = scene::parse_integer(cell.text, reason);
+  const std::optional<int> number = parse_integer(cell.text, reason);
   if (!number) {
     fail_at(cell, file, reason);
   }
@@ -140,4 +161,4 @@ void fail_at(const CsvCell& cell, const std::string& file, const std::string& re
   throw InvalidInput(concat(file, ':', cell.line, ':', cell.column, ": ", reason));
 }
 
-}  // namespace hbar::study
+}  // namespace hbar::scene

@@ -1,4 +1,4 @@
-#include "hbar/adjoint/study/csv.h"
+#include "hbar/core/files/csv.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include "tests/support/message_of.h"
 #include "tests/support/numerics.h"
 
-namespace hbar::study {
+namespace hbar::scene {
 namespace {
 
 std::vector<std::vector<std::string>> texts(std::string_view text) {
@@ -69,5 +69,14 @@ TEST(Csv, SaysWhereItCannotBeRead) {
   EXPECT_EQ(number_in({"-1.5e3", 1, 1}, "a.csv"), -1500.0);
 }
 
+TEST(Csv, ReadsTablesOfSpreadsheets) {
+  EXPECT_EQ(texts("\xef\xbb\xbftime;\"q;1\"\n0;1.5\n"),
+            (std::vector<std::vector<std::string>>{{"time", "q;1"}, {"0", "1.5"}}));
+  EXPECT_EQ(texts("\"a;b\",c\n1;2,3\n"),
+            (std::vector<std::vector<std::string>>{{"a;b", "c"}, {"1;2", "3"}}));
+  EXPECT_EQ(texts("# a; b, c\ntime;x"), (std::vector<std::vector<std::string>>{{"time", "x"}}));
+  EXPECT_EQ(csv_cell("a;b"), "\"a;b\"");
+}
+
 }  // namespace
-}  // namespace hbar::study
+}  // namespace hbar::scene
