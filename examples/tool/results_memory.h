@@ -9,7 +9,7 @@ namespace hbar::tool {
 /// beside it, and then the files' text with what it is made from.
 [[nodiscard]] double estimate_run(const Arguments& arguments, const LoadedProblem& loaded);
 
-/// @throws ToolError (kUsage) if a command would take more than SimulationOptions::max_memory
+/// @throws ProgramError (kUsage) if a command would take more than SimulationOptions::max_memory
 void require_memory(const Arguments& arguments, const LoadedProblem& loaded);
 
 }  // namespace hbar::tool

@@ -43,7 +43,7 @@ TEST(Horizon, RefusesAHorizonThatWouldNotFit) {
       message_of<InvalidInput>([&] { make_horizon(testing::double_pendulum(), options); });
   EXPECT_EQ(
       message,
-      "1000000000 steps of 2 coordinates and their gradient take about 364 GB; the limit is 4 "
+      "1000000000 steps of 2 coordinates and their gradient take about 332 GB; the limit is 4 "
       "GB: take fewer steps or raise max_memory");
 }
 
