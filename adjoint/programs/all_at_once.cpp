@@ -233,6 +233,7 @@ void AllAtOnce::constraint_jacobian(const Eigen::VectorXd& x, Eigen::VectorXd& v
 void AllAtOnce::lagrangian_hessian(const Eigen::VectorXd& x, double sigma,
                                    const Eigen::VectorXd& lambda, solvers::HessianKind kind,
                                    Eigen::VectorXd& values) {
+  require_multipliers(lambda);
   const Stopwatch stopwatch(times_.hessian);
   ++times_.hessians;
   HessianPlan& at = plan(kind);

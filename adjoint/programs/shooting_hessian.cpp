@@ -158,6 +158,7 @@ void Shooting::put_curvature(double sigma, const Eigen::VectorXd& lambda, EntryP
 void Shooting::lagrangian_hessian(const Eigen::VectorXd& x, double sigma,
                                   const Eigen::VectorXd& lambda, solvers::HessianKind kind,
                                   Eigen::VectorXd& values) {
+  require_multipliers(lambda);
   const Stopwatch stopwatch(times_.hessian);
   ++times_.hessians;
   HessianPlan& at = plan(kind);

@@ -20,6 +20,14 @@ Transcription::Transcription(const TrajectoryProblem& problem)
   limits_.upper = Eigen::Map<const Eigen::VectorXd>(upper.data(), own_rows_);
 }
 
+void Transcription::require_multipliers(const Eigen::VectorXd& lambda) const {
+  const Eigen::Index count = constraint_limits().lower.size();
+  if (lambda.size() != count) {
+    throw InvalidInput(concat("transcription: ", lambda.size(), " multipliers; the program has ",
+                              count, " constraints"));
+  }
+}
+
 void Transcription::require_size(const Eigen::VectorXd& x) const {
   if (x.size() != variables_.start.size()) {
     throw InvalidInput(concat("transcription: x has ", x.size(), " entries; it must have ",

@@ -68,6 +68,8 @@ class Transcription : public solvers::Nlp {
   void add_equations(const std::vector<std::string>& names);
   /// @throws InvalidInput if the size of x is not the number of variables
   void require_size(const Eigen::VectorXd& x) const;
+  /// @throws InvalidInput unless there is a multiplier for each constraint
+  void require_multipliers(const Eigen::VectorXd& lambda) const;
   /// Number of the problem's own rows.
   [[nodiscard]] Eigen::Index own_rows() const { return own_rows_; }
   /// Values of the problem's own rows.

@@ -21,7 +21,7 @@ constexpr double kTouching = 1e-9;
 constexpr double kBeside = 1e-7;
 constexpr int kLeaf = 4;
 
-std::string text_of(const Vector3d& p) { return concat("(", p.x(), ", ", p.y(), ", ", p.z(), ")"); }
+std::string point_text(const Vector3d& p) { return concat("(", p.x(), ", ", p.y(), ", ", p.z(), ")"); }
 
 /// Triangles in a tree of boxes.
 class BoxTree {
@@ -138,7 +138,7 @@ void check_passages(const BoxTree& tree, double touching) {
                  [&](std::size_t j) {
                    const auto at = passage(from, to, tree.corners(j), touching);
                    if (at) {
-                     throw InvalidInput(concat("mesh: the surface cuts itself at ", text_of(*at)));
+                     throw InvalidInput(concat("mesh: the surface cuts itself at ", point_text(*at)));
                    }
                  });
     }
@@ -211,11 +211,11 @@ void check_sides(const BoxTree& tree, double beside) {
       continue;
     }
     if (outside > 0 || inside > 1) {
-      throw InvalidInput(concat("mesh: the triangle at ", text_of(centre),
+      throw InvalidInput(concat("mesh: the triangle at ", point_text(centre),
                                 " lies inside the solid: the surface overlaps itself, or holds two "
                                 "solids that overlap"));
     }
-    throw InvalidInput(concat("mesh: the part of the surface at ", text_of(centre),
+    throw InvalidInput(concat("mesh: the part of the surface at ", point_text(centre),
                               " is turned inside out; corners run counter-clockwise seen from "
                               "outside"));
   }

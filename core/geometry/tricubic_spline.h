@@ -15,7 +15,6 @@ struct GridNodes {
   [[nodiscard]] Eigen::Vector3d point(int i, int j, int k) const {
     return origin + spacing * Eigen::Vector3d(i, j, k);
   }
-  friend bool operator==(const GridNodes&, const GridNodes&) = default;
   /// The node opposite to the origin, length.                                                  [3]
   [[nodiscard]] Eigen::Vector3d last() const {
     return point(count.x() - 1, count.y() - 1, count.z() - 1);

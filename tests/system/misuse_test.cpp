@@ -272,9 +272,76 @@ std::vector<Misuse> of_trajectories() {
   return all;
 }
 
+/// Points, directions and multipliers of another program.
+std::vector<Misuse> of_points() {
+  const auto program = [](Formulation formulation) {
+    TrajectoryProblem its = problem();
+    its.constraints = {joint_limits(two(), {1}, 0.0)};
+    return transcribe(its, {.formulation = formulation});
+  };
+  const auto shooting = [program] { return program(Formulation::kShooting); };
+  const Eigen::VectorXd none;
+  std::vector<Misuse> all = {
+      {"DesignOfAShortPoint", [=] { static_cast<void>(shooting()->design(none)); },
+       "transcription: x has 0 entries; it must have"},
+      {"InputsOfALongPoint",
+       [=] {
+         const auto its = shooting();
+         Eigen::VectorXd x = its->variables().start;
+         x.conservativeResize(x.size() + 1);
+         static_cast<void>(its->inputs(x));
+       },
+       "entries; it must have"},
+      {"DirectionsOfAnotherCount",
+       [=] {
+         const Horizon of = horizon();
+         Directions along = Directions::zero(of, 2);
+         along.q0.resize(2, 1);
+         static_cast<void>(TangentSweep(of).push_forward(trajectory(of), along));
+       },
+       "tangent: the directions by q0 are 2 x 1; they must be 2 x 2"},
+      {"DirectionsOfAnotherModel",
+       [=] {
+         const Horizon of = horizon();
+         Directions along = Directions::zero(of, 1);
+         along.qdot0.resize(3, 1);
+         static_cast<void>(TangentSweep(of).push_forward(trajectory(of), along));
+       },
+       "tangent: the directions by qdot0 are 3 x 1; they must be 2 x 1"},
+      {"NegativeStiffness",
+       [] {
+         const Horizon of(two(), ParameterSet::named(two(), {"joint.j0.stiffness"}), options());
+         Inputs given = of.nominal_inputs();
+         given.p[0] = -1.0;
+         static_cast<void>(simulate(of, given));
+       },
+       "joint.j0.stiffness is -1; it must be"}};
+  for (const Formulation formulation : {Formulation::kShooting, Formulation::kAllAtOnce}) {
+    all.push_back({concat("MultipliersOfAnotherProgramIn", all.size()),
+                   [=] {
+                     const auto its = program(formulation);
+                     Eigen::VectorXd values;
+                     its->lagrangian_hessian(its->variables().start, 1.0, Eigen::VectorXd(99),
+                                             solvers::HessianKind::kExact, values);
+                   },
+                   "transcription: 99 multipliers; the program has"});
+    all.push_back({concat("NegativeDampingIn", all.size()),
+                   [=] {
+                     const auto its = program(formulation);
+                     Eigen::VectorXd x = its->variables().start;
+                     x[1] = -1.0;  // joint.j1.damping
+                     static_cast<void>(its->objective(x));
+                     Eigen::VectorXd c(its->constraint_limits().lower.size());
+                     its->constraints(x, c);
+                   },
+                   "joint.j1.damping is -1; it must be"});
+  }
+  return all;
+}
+
 std::vector<Misuse> misuses() {
   std::vector<Misuse> all = of_models_and_options();
-  for (const auto& more : {of_problems(), of_objects(), of_trajectories()}) {
+  for (const auto& more : {of_problems(), of_objects(), of_trajectories(), of_points()}) {
     all.insert(all.end(), more.begin(), more.end());
   }
   return all;
