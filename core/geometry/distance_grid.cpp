@@ -141,6 +141,26 @@ class Reader {
   std::string_view bytes_;
 };
 
+/// Whether the grid of some mesh could have these numbers. A checksum tells that they are those
+/// that were written, not who wrote them.
+bool are_of_a_mesh(const GridNodes& nodes, const Eigen::AlignedBox3d& box, double max_error,
+                   const std::vector<double>& coefficients) {
+  const double cells = box.sizes().maxCoeff() / nodes.spacing;
+  // A mesh has a volume, which neither vanishes nor overflows.
+  const double cell_volume = nodes.spacing * nodes.spacing * nodes.spacing;
+  const bool placed = nodes.spacing > 0.0 && box.sizes().minCoeff() > 0.0 &&
+                      cells > kMinDistanceCells - 0.5 && cells < kMaxDistanceCells + 0.5 &&
+                      std::isnormal(cell_volume) &&
+                      std::isfinite(cell_volume * cells * cells * cells) &&
+                      Eigen::AlignedBox3d(nodes.origin, nodes.last()).contains(box) &&
+                      max_error >= 0.0 && std::isfinite(max_error);
+  // Distances of nodes are below the diagonal; a cubic spline through them overshoots by less than
+  // 3 along each axis.
+  const double largest = 27.0 * (nodes.last() - nodes.origin).norm();
+  return placed && std::all_of(coefficients.begin(), coefficients.end(),
+                               [&](double number) { return std::abs(number) <= largest; });
+}
+
 }  // namespace
 
 DistanceGrid::DistanceGrid(State state)
@@ -262,7 +282,11 @@ DistanceGrid::State DistanceGrid::read(std::string_view bytes) {
       checksum_of(bytes.substr(0, bytes.size() - sizeof(std::uint64_t)))) {
     throw InvalidInput("distance grid: the data does not agree with its checksum");
   }
-  return {TricubicSpline(nodes, std::move(coefficients)), {low, high}, max_error};
+  const Eigen::AlignedBox3d box(low, high);
+  if (!are_of_a_mesh(nodes, box, max_error, coefficients)) {
+    throw InvalidInput("distance grid: the data holds numbers that no mesh leads to");
+  }
+  return {TricubicSpline(nodes, std::move(coefficients)), box, max_error};
 }
 
 std::shared_ptr<const DistanceField> mesh_distance(const TriangleMesh& mesh_in_body_frame,

@@ -285,6 +285,44 @@ TEST(DistanceGrid, SaysWhatIsWrongWithItsBytes) {
   EXPECT_EQ(refusal(altered), "distance grid: the data does not agree with its checksum");
 }
 
+/// Bytes in which a number is another one, with the checksum of that.
+std::string forged(std::string bytes, std::size_t place, double number) {
+  const auto put = [&](std::size_t at, const auto& value) {
+    const auto part = std::bit_cast<std::array<char, sizeof value>>(value);
+    std::copy(part.begin(), part.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
+  };
+  put(place, number);
+  Checksum sum;
+  sum.add(std::string_view(bytes).substr(0, bytes.size() - sizeof sum.value()));
+  put(bytes.size() - sizeof sum.value(), sum.value());
+  return bytes;
+}
+
+TEST(DistanceGrid, RefusesNumbersOfNoMeshWhateverTheirChecksum) {
+  const std::string bytes = DistanceGrid(icosphere(1.0, 1), 4).bytes();
+  const char* const reason = "distance grid: the data holds numbers that no mesh leads to";
+  const double infinity = std::numeric_limits<double>::infinity();
+  // Eight bytes each: magic, version, three counts, origin, spacing, box, error, coefficients.
+  constexpr std::size_t kOrigin = 40;
+  constexpr std::size_t kSpacing = 64;
+  constexpr std::size_t kLow = 72;
+  constexpr std::size_t kHigh = 96;
+  constexpr std::size_t kError = 120;
+  constexpr std::size_t kCoefficients = 128;
+  EXPECT_EQ(refusal(forged(bytes, kError, 0.25)), "accepted");
+  for (const std::size_t place : {kOrigin, kSpacing, kLow, kHigh, kError, kCoefficients}) {
+    for (const double number : {std::nan(""), infinity, -infinity, 1e300}) {
+      const bool may_be = place == kError && number == 1e300;
+      EXPECT_EQ(refusal(forged(bytes, place, number)), may_be ? "accepted" : reason)
+          << number << " at " << place;
+    }
+  }
+  for (const double spacing : {0.0, -0.5, 5e-324, 1e-3}) {
+    EXPECT_EQ(refusal(forged(bytes, kSpacing, spacing)), reason) << spacing;
+  }
+  EXPECT_EQ(refusal(forged(bytes, kError, -1e-3)), reason);
+}
+
 TEST(DistanceGrid, RefusesAbsurdNumbersOfCellsAndOpenSurfaces) {
   const TriangleMesh box = box_mesh({1.0, 1.0, 1.0});
   EXPECT_EQ(refusal(box, 1000),
