@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <sstream>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/numbers.h"
@@ -87,6 +90,54 @@ void require(const std::filesystem::path& file, const std::string& word,
   }
 }
 
+/// Refuses what CHOLMOD does not notice: sizes that are no whole numbers (it returns a wild pointer
+/// for negative ones), fewer entries than promised (it keeps their memory), and lines that it would
+/// read in part.
+///
+/// @param count  of sizes: 3 for a matrix (the last is that of its entries), 2 for a dense one
+void check_lines(const std::filesystem::path& file, std::string_view text, std::size_t count,
+                 const char* allowed) {
+  constexpr std::size_t kLongestLine = 1000;
+  std::vector<int> sizes;
+  std::int64_t entries = 0;
+  for (int number = 1; !text.empty(); ++number) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (line.size() > kLongestLine) {
+      refuse(file, concat("line ", number, " has more than ", kLongestLine, " characters"),
+             allowed);
+    }
+    if (line.find('\0') != std::string_view::npos) {
+      refuse(file, concat("line ", number, " has a zero byte"), allowed);
+    }
+    if (line.starts_with('%') || line.find_first_not_of(" \t\r\v\f") == std::string_view::npos) {
+      continue;
+    }
+    if (!sizes.empty()) {
+      ++entries;
+      continue;
+    }
+    for (const std::string_view word : scene::split_words(line)) {
+      std::string reason;
+      sizes.push_back(scene::parse_integer(word, reason).value_or(-1));
+    }
+    if (sizes.size() != count || *std::min_element(sizes.begin(), sizes.end()) < 0) {
+      refuse(file,
+             concat("line ", number, " is \"", scene::quotable(line), "\" where ", count,
+                    " sizes belong"),
+             allowed);
+    }
+  }
+  if (sizes.empty()) {
+    refuse(file, "there is no line of sizes", allowed);
+  }
+  const std::int64_t promised = count == 3 ? sizes[2] : std::int64_t{sizes[0]} * sizes[1];
+  if (entries < promised) {
+    refuse(file, concat("there are ", entries, " lines of entries; its sizes promise ", promised),
+           allowed);
+  }
+}
+
 /// A text as CHOLMOD reads it: a FILE over its bytes.
 FilePointer reader(std::string& text) {
   FilePointer stream(::fmemopen(text.data(), text.size(), "r"));
@@ -120,6 +171,25 @@ void check_finite(const std::filesystem::path& file, const double* values, std::
   }
 }
 
+/// CHOLMOD writes a matrix of ones as a pattern, and gives that other entries when it reads it if
+/// it is symmetric: the same with its ones.
+std::string with_ones(const std::string& text) {
+  const std::string pattern = " pattern ";
+  const std::size_t at = text.find(pattern);
+  if (at >= text.find('\n')) {
+    return text;
+  }
+  std::istringstream stream(text);
+  std::string out;
+  int line_number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++line_number;  // the head line and that of sizes come before the entries
+    out += line_number == 1 ? line.replace(at, pattern.size(), " integer ") : line;
+    out += line_number > 2 ? " 1\n" : "\n";
+  }
+  return out;
+}
+
 /// With CHOLMOD's head line, the comment follows.
 std::string with_comment(std::string text, const std::string& comment) {
   std::string lines;
@@ -140,6 +210,7 @@ solvers::SparseMatrix read_matrix(const std::filesystem::path& file) {
   require(file, words[2], {"coordinate"}, kMatrixKinds);
   require(file, words[3], {"real", "integer", "pattern"}, kMatrixKinds);
   require(file, words[4], {"general", "symmetric", "skew-symmetric"}, kMatrixKinds);
+  check_lines(file, text, 3, kMatrixKinds);
   Common common;
   SparsePointer A(cholmod_read_sparse(reader(text).get(), common.get()), {common.get()});
   if (A != nullptr && A->stype != 0) {
@@ -174,6 +245,7 @@ Eigen::VectorXd read_vector(const std::filesystem::path& file, Eigen::Index rows
   require(file, words[2], {"array"}, kVectorKinds);
   require(file, words[3], {"real", "integer"}, kVectorKinds);
   require(file, words[4], {"general"}, kVectorKinds);
+  check_lines(file, text, 2, kVectorKinds);
   Common common;
   const DensePointer x(cholmod_read_dense(reader(text).get(), common.get()), {common.get()});
   if (common.out_of_memory()) {
@@ -213,7 +285,7 @@ void write_matrix(const std::filesystem::path& file, const solvers::SparseMatrix
   const std::string text = written([&](FILE* stream) {
     return cholmod_write_sparse(stream, &view, nullptr, nullptr, common.get());
   });
-  scene::write_result_file(file, with_comment(text, comment));
+  scene::write_result_file(file, with_comment(with_ones(text), comment));
 }
 
 void write_vector(const std::filesystem::path& file, const Eigen::VectorXd& x,

@@ -1,9 +1,11 @@
 #include "sidecar.h"
 
+#include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "hbar/core/base/error.h"
+#include "hbar/core/files/numbers.h"
 #include "hbar/core/files/text_file.h"
 
 namespace hbar::solver_benchmark {
@@ -28,14 +30,34 @@ Json runs(const std::vector<int>& sizes) {
   return out;
 }
 
-std::vector<int> sizes(const Json& runs_of_blocks) {
+/// A number that is an int already: JSON's own conversion would make one of any number.
+int whole_number(const Json& number, std::string_view what) {
+  constexpr std::uint64_t kLargest = std::numeric_limits<int>::max();
+  if (!number.is_number_unsigned() || number.get<std::uint64_t>() > kLargest) {
+    throw InvalidInput(concat(what, " is ", scene::quotable(number.dump()),
+                              "; it is a whole number from 0 to ", kLargest));
+  }
+  return number.get<int>();
+}
+
+/// Block sizes from runs; nothing is made of more blocks than the matrix has rows.
+std::vector<int> sizes(const Json& runs_of_blocks, Eigen::Index rows) {
   std::vector<int> out;
+  Eigen::Index left = rows;
   for (const Json& run : runs_of_blocks) {
-    const int count = run.at(0).get<int>();
-    if (count < 1 || run.at(1).get<int>() < 1) {
+    const int count = whole_number(run.at(0), "blocks: a count");
+    const int size = whole_number(run.at(1), "blocks: a size");
+    if (count < 1 || size < 1) {
       throw InvalidInput("blocks: counts and sizes are at least 1");
     }
-    out.insert(out.end(), static_cast<std::size_t>(count), run.at(1).get<int>());
+    left -= Eigen::Index{count} * size;
+    if (left < 0) {
+      break;
+    }
+    out.insert(out.end(), static_cast<std::size_t>(count), size);
+  }
+  if (left != 0 && !runs_of_blocks.empty()) {
+    throw InvalidInput(concat("blocks are not those of a matrix of ", rows, " rows"));
   }
   return out;
 }
@@ -57,19 +79,17 @@ void set(const Json& json, BenchmarkMatrix& matrix) {
   label.family = json.at("family");
   label.system = json.at("system");
   label.integrator = json.at("integrator");
-  label.dof = json.at("n");
-  label.steps = json.at("T");
+  label.dof = whole_number(json.at("n"), "n");
+  label.steps = whole_number(json.at("T"), "T");
   label.h = json.at("h");
   matrix.options.structure = find_structure(json.at("structure"));
-  matrix.options.block_sizes = sizes(json.at("blocks"));
+  if (json.at("rows") != matrix.A.rows()) {
+    throw InvalidInput(concat("rows is ", scene::quotable(json.at("rows").dump()),
+                              "; the matrix has ", matrix.A.rows(), " rows"));
+  }
+  matrix.options.block_sizes = sizes(json.at("blocks"), matrix.A.rows());
   if (json.at("condition").is_number()) {
     matrix.condition = json.at("condition").get<double>();
-  }
-  const std::vector<int>& blocks = matrix.options.block_sizes;
-  const auto rows = std::accumulate(blocks.begin(), blocks.end(), Eigen::Index{0});
-  if (json.at("rows") != matrix.A.rows() || (!blocks.empty() && rows != matrix.A.rows())) {
-    throw InvalidInput(
-        concat("rows and blocks are not those of a matrix of ", matrix.A.rows(), " rows"));
   }
 }
 

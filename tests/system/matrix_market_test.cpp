@@ -110,6 +110,15 @@ TEST_F(MatrixMarket, SymmetricPatternAndIntegerFilesAreFilledIn) {
             0.0);
 }
 
+TEST_F(MatrixMarket, OnesAreWrittenAsEntries) {
+  for (const std::string entries : {"1 1\n2 1\n1 2\n", "1 1\n2 1\n2 2\n"}) {
+    const SparseMatrix A =
+        read_matrix(write("%%MatrixMarket matrix coordinate pattern general\n2 2 3\n" + entries));
+    write_matrix(folder_ / "ones.mtx", A, "two lines\nof comment");
+    EXPECT_TRUE(same_bits(read_matrix(folder_ / "ones.mtx"), A)) << entries;
+  }
+}
+
 TEST_F(MatrixMarket, WhatIsNoSuchMatrixIsRefusedWithTheFilesName) {
   const std::string real = "%%MatrixMarket matrix coordinate real general\n";
   EXPECT_EQ(refusal(""), "the first line is \"\"");
@@ -125,14 +134,22 @@ TEST_F(MatrixMarket, WhatIsNoSuchMatrixIsRefusedWithTheFilesName) {
   EXPECT_EQ(refusal(real + "2 2 1\n1 1 nan\n"), "an entry is not a finite number");
   EXPECT_EQ(refusal(real + "2 2 1\n1 1 inf\n"), "an entry is not a finite number");
   const std::string wrong = "sizes, indices or numbers are not as they should be";
-  EXPECT_EQ(refusal(real), wrong);
-  EXPECT_EQ(refusal(real + "2 2 2\n1 1 1\n"), wrong);
+  EXPECT_EQ(refusal(real), "there is no line of sizes");
+  EXPECT_EQ(refusal(real + "2 2 2\n1 1 1\n"), "there are 1 lines of entries; its sizes promise 2");
+  EXPECT_EQ(refusal(real + "% by hand\n2 2\n1 1 1\n"), "line 3 is \"2 2\" where 3 sizes belong");
+  EXPECT_EQ(refusal(real + "2 -2 1\n1 1 1\n"), "line 2 is \"2 -2 1\" where 3 sizes belong");
+  EXPECT_EQ(refusal(real + "2 2 1e0\n1 1 1\n"), "line 2 is \"2 2 1e0\" where 3 sizes belong");
+  EXPECT_EQ(refusal(real + '%' + std::string(1000, 'x') + "\n1 1 1\n1 1 1\n"),
+            "line 2 has more than 1000 characters");
+  EXPECT_EQ(refusal(real + "1 1 1\n" + '\0' + "1 1 1\n"), "line 3 has a zero byte");
   EXPECT_EQ(refusal(real + "2 2 1\n3 1 1\n"), wrong);
   EXPECT_EQ(refusal(real + "2 2 1\n1 one 1\n"), wrong);
   EXPECT_THROW(static_cast<void>(read_matrix(folder_ / "none.mtx")), IoError);
   const fs::path vector = write("%%MatrixMarket matrix array real general\n2 1\n1\n2\n");
   EXPECT_EQ(read_vector(vector, 2), Eigen::Vector2d(1.0, 2.0));
   EXPECT_THROW(static_cast<void>(read_vector(vector, 3)), InvalidInput);
+  const fs::path negative = write("%%MatrixMarket matrix array real general\n3 -1\n1\n2\n3\n");
+  EXPECT_THROW(static_cast<void>(read_vector(negative, 3)), InvalidInput);
 }
 
 TEST_F(MatrixMarket, ASidecarThatDoesNotFitIsRefused) {
@@ -142,25 +159,36 @@ TEST_F(MatrixMarket, ASidecarThatDoesNotFitIsRefused) {
       R"({"source": "s", "family": "", "n": 1, "T": 2, "h": 0.1, "integrator": "bdf1",
           "system": "adjoint", "structure": "block_triangular", "blocks": [[2, 1]], "rows": 2,
           "condition": null})";
-  const auto refused = [&](const std::string& from, const std::string& to) {
+  // What is said of the text with a part replaced; empty if it is read.
+  const auto refusal_of = [&](const std::string& from, const std::string& to) -> std::string {
     std::string text = good;
     text.replace(text.find(from), from.size(), to);
-    std::ofstream(folder_ / "m.json") << text;
+    const fs::path sidecar = folder_ / "m.json";
+    std::ofstream(sidecar) << text;
     try {
       static_cast<void>(read_benchmark_matrix(file));
     } catch (const InvalidInput& error) {
-      EXPECT_TRUE(std::string(error.what()).starts_with((folder_ / "m.json").string()));
-      return true;
+      const std::string message = error.what();
+      EXPECT_TRUE(message.starts_with(sidecar.string() + ": ")) << message;
+      return message.substr(sidecar.string().size() + 2);
     }
-    return false;
+    return "";
   };
-  EXPECT_FALSE(refused("\"s\"", "\"s\""));
-  EXPECT_TRUE(refused("[[2, 1]]", "[[3, 1]]"));
-  EXPECT_TRUE(refused("[[2, 1]]", "[[-2, 1]]"));
-  EXPECT_TRUE(refused("\"rows\": 2", "\"rows\": 3"));
-  EXPECT_TRUE(refused("block_triangular", "blocky"));
-  EXPECT_TRUE(refused("\"n\": 1", "\"n\": \"one\""));
-  EXPECT_TRUE(refused("{", "[")) << "broken JSON";
+  const std::string blocks = "blocks are not those of a matrix of 2 rows";
+  const std::string whole = "; it is a whole number from 0 to 2147483647";
+  EXPECT_EQ(refusal_of("\"s\"", "\"s\""), "");
+  EXPECT_EQ(refusal_of("[[2, 1]]", "[[3, 1]]"), blocks);
+  EXPECT_EQ(refusal_of("[[2, 1]]", "[[1, 1]]"), blocks);
+  EXPECT_EQ(refusal_of("[[2, 1]]", "[[2000000000, 1], [1, 1]]"), blocks);
+  EXPECT_EQ(refusal_of("[[2, 1]]", "[[0, 1]]"), "blocks: counts and sizes are at least 1");
+  EXPECT_EQ(refusal_of("[[2, 1]]", "[[-2, 1]]"), "blocks: a count is -2" + whole);
+  EXPECT_EQ(refusal_of("[[2, 1]]", "[[2, 4294967297]]"), "blocks: a size is 4294967297" + whole);
+  EXPECT_EQ(refusal_of("\"T\": 2", "\"T\": 1e300"), "T is 1e+300" + whole);
+  EXPECT_EQ(refusal_of("\"n\": 1", "\"n\": \"one\""), "n is \"one\"" + whole);
+  EXPECT_EQ(refusal_of("\"rows\": 2", "\"rows\": 3"), "rows is 3; the matrix has 2 rows");
+  EXPECT_EQ(refusal_of("block_triangular", "blocky").substr(0, 31),
+            "there is no structure \"blocky\";");
+  EXPECT_EQ(refusal_of("{", "[").substr(0, 31), "not what `hbar corpus` writes: ") << "broken JSON";
 }
 
 }  // namespace
