@@ -20,6 +20,25 @@ if(HBAR_SANITIZE)
                       -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${HBAR_SANITIZE})
 endif()
+if(HBAR_BUILD_FUZZERS)
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    message(FATAL_ERROR "HBAR_BUILD_FUZZERS is ON and the compiler is ${CMAKE_CXX_COMPILER_ID}: libFuzzer "
+                        "comes with clang (cmake --preset fuzz, or -DCMAKE_CXX_COMPILER=clang++)")
+  endif()
+  include(CheckCXXSourceCompiles)
+  set(CMAKE_REQUIRED_FLAGS -fsanitize=fuzzer)
+  check_cxx_source_compiles(
+    "extern \"C\" int LLVMFuzzerTestOneInput(const unsigned char*, decltype(sizeof 0)) { return 0; }"
+    HBAR_HAVE_LIBFUZZER)
+  unset(CMAKE_REQUIRED_FLAGS)
+  if(NOT HBAR_HAVE_LIBFUZZER)
+    message(FATAL_ERROR "HBAR_BUILD_FUZZERS is ON and clang has no libFuzzer (Debian 12: apt-get "
+                        "install libclang-rt-14-dev)")
+  endif()
+  # What libFuzzer learns from: which branches of the code an input takes.
+  add_compile_options(-fsanitize=fuzzer-no-link)
+  add_link_options(-fsanitize=fuzzer-no-link)
+endif()
 
 # HBAR_ARCH applies only where this machine can run the result: a build for another machine
 # says so with CMAKE_CROSSCOMPILING and is taken at its word.

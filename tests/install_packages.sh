@@ -1,20 +1,25 @@
 #!/bin/sh
-# Installs the Debian and Ubuntu packages that hbar needs: tests/install_packages.sh build|test|full
+# Installs the Debian and Ubuntu packages that hbar needs:
 #
-# `build` is what the library and its examples need, `test` adds what the tests need, `full` what the
-# benchmarks need. Nothing is downloaded, and no network is needed, when all of it is there. Needs
-# root or sudo otherwise.
+#   tests/install_packages.sh build|test|fuzz|full
+#
+# `build` is what the library and its examples need, `test` adds what the tests need, `fuzz` what
+# fuzzing needs, `full` that and what the benchmarks need. Nothing is downloaded, and no network is
+# needed, when all of it is there. Needs root or sudo otherwise.
 set -eu
 
 build="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev coinor-libipopt-dev
        liblapack-dev libmumps-seq-dev libnlopt-dev libtinyxml2-dev libcli11-dev
        nlohmann-json3-dev libfmt-dev"
 test="python3 git libgtest-dev"
+fuzz="clang"
 # Left out with a message where the distribution has none: one of each line is enough.
 optional="libassimp-dev:DAE,_PLY_and_glTF_meshes
           libmujoco-dev:the_comparison_with_MuJoCo
           clang-format-14|clang-format:the_format_check
           gnuplot-nox|gnuplot:the_figures_of_hbar_solvers"
+# That of the distribution's clang: 18 in Ubuntu 24.04, 14 in Debian 12.
+libfuzzer="libclang-rt-18-dev|libclang-rt-14-dev:fuzzing"
 
 installed() {
   dpkg-query -W -f '${Status}\n' "$1" 2>/dev/null | grep -q '^install ok installed'
@@ -51,8 +56,9 @@ choose() {
 case ${1:-} in
   build) wanted=$build; optional= ;;
   test) wanted="$build $test" ;;
-  full) wanted="$build $test libbenchmark-dev" ;;
-  *) echo "usage: install_packages.sh build|test|full" >&2; exit 2 ;;
+  fuzz) wanted="$build $test $fuzz"; optional="$optional $libfuzzer" ;;
+  full) wanted="$build $test $fuzz libbenchmark-dev"; optional="$optional $libfuzzer" ;;
+  *) echo "usage: install_packages.sh build|test|fuzz|full" >&2; exit 2 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then

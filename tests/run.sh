@@ -4,6 +4,7 @@
 #   tests/run.sh                 release build, checkers, tests, a stranger's project
 #   tests/run.sh --dev           and the same tests under address and undefined-behaviour sanitizers
 #   tests/run.sh --tsan          and under the thread sanitizer
+#   tests/run.sh --fuzz          and a short search for inputs that a reader mistreats (needs clang)
 #   tests/run.sh --full          and all of it, without the optional components as well; every
 #                                allocation of short runs of the command fails once; the benchmarks
 #                                are built
@@ -15,13 +16,15 @@ cd "$(dirname "$0")/.." || exit 2
 install=yes
 presets=release
 full=no
+fuzz=no
 for option in "$@"; do
   case $option in
     --dev) presets="$presets dev" ;;
     --tsan) presets="$presets tsan" ;;
-    --full) full=yes ;;
+    --fuzz) fuzz=yes ;;
+    --full) full=yes; fuzz=yes ;;
     --no-install) install=no ;;
-    *) sed -n '2,12s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+    *) sed -n '2,13s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
   esac
 done
 [ "$full" = no ] || presets="release bare dev tsan"
@@ -37,6 +40,7 @@ left_out() {
       *) printf '%s build, ' "$preset" ;;
     esac
   done
+  [ "$fuzz" = yes ] || printf 'fuzzing, '
   echo "every place of the fault injection, build of the benchmarks"
 }
 
@@ -76,6 +80,7 @@ run_tests() {
 }
 
 kind=test
+[ "$fuzz" = no ] || kind=fuzz
 [ "$full" = no ] || kind=full
 [ "$install" = no ] || step tests/install_packages.sh $kind
 
@@ -87,6 +92,10 @@ for preset in $presets; do
   step cmake --build --preset "$preset" --parallel "$(nproc)"
   run_tests "$preset"
 done
+if [ "$fuzz" = yes ]; then
+  echo "== tests/fuzz/run.sh"
+  if tests/fuzz/run.sh; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+fi
 if [ "$full" = yes ]; then
   step env HBAR_EVERY_FAULT=1 ctest --preset release -R Faults -j "$(nproc)" --timeout 7200
   step cmake --preset release -DHBAR_BUILD_BENCHMARKS=ON
