@@ -1,6 +1,6 @@
 // Tables of comma-separated values: their cells, and a table of measured numbers.
 
-#include "hbar/adjoint/study/csv.h"
+#include "hbar/core/files/csv.h"
 
 #include "hbar/adjoint/study/trajectory_csv.h"
 #include "hbar/core/base/error.h"
@@ -9,8 +9,8 @@
 namespace hbar::fuzz {
 namespace {
 
-using study::CsvCell;
-using study::CsvRow;
+using scene::CsvCell;
+using scene::CsvRow;
 using study::TrajectoryData;
 
 const study::TrajectoryNames kNames = {.q = {"a", "b, c"},
@@ -28,12 +28,12 @@ void check_cells(const std::vector<CsvRow>& rows) {
       continue;  // an empty line is no row
     }
     for (const CsvCell& cell : row) {
-      text += (&cell == row.data() ? "" : ",") + study::csv_cell(cell.text);
+      text += (&cell == row.data() ? "" : ",") + scene::csv_cell(cell.text);
     }
     text += '\n';
     written.push_back(&row);
   }
-  const std::vector<CsvRow> again = study::parse_csv(text, "written.csv");
+  const std::vector<CsvRow> again = scene::parse_csv(text, "written.csv");
   require(again.size() == written.size(), "a table is read with other rows");
   for (std::size_t i = 0; i < again.size(); ++i) {
     require(again[i].size() == written[i]->size(), "a row is read with other cells");
@@ -78,7 +78,7 @@ void check_trajectory(const TrajectoryData& read) {
 }  // namespace
 
 void try_input(std::string_view input) {
-  check_cells(study::parse_csv(input, "table.csv"));
+  check_cells(scene::parse_csv(input, "table.csv"));
   check_trajectory(study::read_trajectory_csv(input, "table.csv", kNames, kGrid));
 }
 

@@ -100,8 +100,10 @@ void check_round_trip(const Description& description) {
 
 /// Simulates and differentiates: a result that claims to be one consists of numbers.
 void simulate_and_differentiate(const std::filesystem::path& file) {
-  const LoadedProblem loaded =
-      load_problem(file, {.steps = kSteps, .parameters = ParameterChoice::kAll});
+  LoadOptions load;
+  load.steps = kSteps;
+  load.parameters = ParameterChoice::kAll;
+  const LoadedProblem loaded = load_problem(file, load);
   const Problem& problem = loaded.problem;
   Inputs inputs = problem.inputs;
   inputs.q0.setConstant(0.1);
