@@ -102,7 +102,8 @@ class TermChecker {
 
   static void note(double gap, double& worst, std::string& worst_name,
                    const std::function<std::string()>& name) {
-    if (!std::isnan(worst) && !(gap <= worst)) {  // a gap of NaN stays
+    // The first of equals; a gap of NaN stays.
+    if (!std::isnan(worst) && !(gap <= worst * (1.0 + 1e-6))) {
       worst = gap;
       worst_name = name();
     }
@@ -206,7 +207,10 @@ class TermChecker {
         }
       }
       for (Index row = 0; row < gaps.rows(); ++row) {
-        const double norm = squares[row] == 0.0 ? norms_[row] : std::sqrt(squares[row]);
+        // Curvature that no difference of the partials can show counts as none.
+        const double norm = squares[row] == 0.0
+                                ? norms_[row]
+                                : std::max(std::sqrt(squares[row]), 1e-9 * norms_[row]);
         for (Index j = 0; j < count(); ++j) {
           const double gap = std::abs(gaps(row, j)) / norm;
           if (!is_unresolved(gap, errors(row, j) / norm)) {

@@ -21,7 +21,9 @@ constexpr double kTouching = 1e-9;
 constexpr double kBeside = 1e-7;
 constexpr int kLeaf = 4;
 
-std::string point_text(const Vector3d& p) { return concat("(", p.x(), ", ", p.y(), ", ", p.z(), ")"); }
+std::string point_text(const Vector3d& p) {
+  return concat("(", p.x(), ", ", p.y(), ", ", p.z(), ")");
+}
 
 /// Triangles in a tree of boxes.
 class BoxTree {
@@ -134,13 +136,14 @@ void check_passages(const BoxTree& tree, double touching) {
       const Vector3d& to = tree.corners(i)[(k + 1) % 3];
       Eigen::AlignedBox3d box(from);
       box.extend(to);
-      tree.visit([&](const Eigen::AlignedBox3d& other) { return box.intersects(other); },
-                 [&](std::size_t j) {
-                   const auto at = passage(from, to, tree.corners(j), touching);
-                   if (at) {
-                     throw InvalidInput(concat("mesh: the surface cuts itself at ", point_text(*at)));
-                   }
-                 });
+      tree.visit(
+          [&](const Eigen::AlignedBox3d& other) { return box.intersects(other); },
+          [&](std::size_t j) {
+            const auto at = passage(from, to, tree.corners(j), touching);
+            if (at) {
+              throw InvalidInput(concat("mesh: the surface cuts itself at ", point_text(*at)));
+            }
+          });
     }
   }
 }

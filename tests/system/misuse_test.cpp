@@ -307,15 +307,7 @@ std::vector<Misuse> of_points() {
          along.qdot0.resize(3, 1);
          static_cast<void>(TangentSweep(of).push_forward(trajectory(of), along));
        },
-       "tangent: the directions by qdot0 are 3 x 1; they must be 2 x 1"},
-      {"NegativeStiffness",
-       [] {
-         const Horizon of(two(), ParameterSet::named(two(), {"joint.j0.stiffness"}), options());
-         Inputs given = of.nominal_inputs();
-         given.p[0] = -1.0;
-         static_cast<void>(simulate(of, given));
-       },
-       "joint.j0.stiffness is -1; it must be"}};
+       "tangent: the directions by qdot0 are 3 x 1; they must be 2 x 1"}};
   for (const Formulation formulation : {Formulation::kShooting, Formulation::kAllAtOnce}) {
     all.push_back({concat("MultipliersOfAnotherProgramIn", all.size()),
                    [=] {
@@ -325,16 +317,6 @@ std::vector<Misuse> of_points() {
                                              solvers::HessianKind::kExact, values);
                    },
                    "transcription: 99 multipliers; the program has"});
-    all.push_back({concat("NegativeDampingIn", all.size()),
-                   [=] {
-                     const auto its = program(formulation);
-                     Eigen::VectorXd x = its->variables().start;
-                     x[1] = -1.0;  // joint.j1.damping
-                     static_cast<void>(its->objective(x));
-                     Eigen::VectorXd c(its->constraint_limits().lower.size());
-                     its->constraints(x, c);
-                   },
-                   "joint.j1.damping is -1; it must be"});
   }
   return all;
 }

@@ -330,7 +330,7 @@ TEST_F(ToolResults, ColumnsOfAnyNameAreQuoted) {
   ASSERT_EQ(hbar({"simulate", file, "--steps", "1", "--csv", path("c.csv")}).code, 0);
   const std::string text = read_file(path("c.csv"));
   EXPECT_EQ(text.substr(0, text.find('\n')),
-            "time,q.f.x,q.f.y,q.f.angle,\"q.j,k \"\"x\"\"\",qdot.f.x,qdot.f.y,qdot.f.angle,"
+            "time,q.f.x,q.f.y,q.f.theta,\"q.j,k \"\"x\"\"\",qdot.f.x,qdot.f.y,qdot.f.theta,"
             "\"qdot.j,k \"\"x\"\"\"");
 }
 

@@ -47,8 +47,8 @@ TEST(NoticeEffects, SensorsThatReadNothing) {
 
 TEST(NoticeEffects, DefaultDampingOfFreeBodies) {
   const auto scene = [](const std::string& joint) {
-    return "<redmax>\n<default><joint damping=\"2\"/></default>\n<robot><link name=\"l\">\n" + joint + kBall +
-           "</link></robot></redmax>";
+    return "<redmax>\n<default><joint damping=\"2\"/></default>\n<robot><link name=\"l\">\n" +
+           joint + kBall + "</link></robot></redmax>";
   };
   EXPECT_EQ(notices_of(scene("<joint name=\"f\" type=\"free3d-exp\"/>")),
             Notices{"a.xml:4: <joint name=\"f\">: the default damping 2 slows this free body, too; "

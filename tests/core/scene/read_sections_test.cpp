@@ -81,8 +81,9 @@ TEST(Sections, ReadVariablesSensorsAndVirtualShapes) {
 
 TEST(Sections, NoticeAWidthThatHasNoEffect) {
   const Scene scene = read_scene_text(
-      scene_with_section("<ground/><contact><ground_contact body=\"b\" kn=\"1\" friction_width=\"1\"/>"
-                         "</contact>"),
+      scene_with_section(
+          "<ground/><contact><ground_contact body=\"b\" kn=\"1\" friction_width=\"1\"/>"
+          "</contact>"),
       "a.xml");
   EXPECT_EQ(scene.description.contacts.at(0).friction_width, std::nullopt);
   EXPECT_EQ(scene.notices,

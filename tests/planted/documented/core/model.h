@@ -26,8 +26,7 @@ struct BareStruct {
 };
 
 /// Documented, on two lines.
-[[nodiscard]] std::vector<int> documented(int a,
-                                          int b);
+[[nodiscard]] std::vector<int> documented(int a, int b);
 [[nodiscard]] std::vector<int> documented(int a);
 
 // planted: documented

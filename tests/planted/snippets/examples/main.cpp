@@ -1,5 +1,3 @@
 #include <iostream>
 
-int main() {
-  std::cout << model.name();
-}
+int main() { std::cout << model.name(); }
