@@ -210,7 +210,7 @@ class TermChecker {
         // Curvature that no difference of the partials can show counts as none.
         const double norm = squares[row] == 0.0
                                 ? norms_[row]
-                                : std::max(std::sqrt(squares[row]), 1e-9 * norms_[row]);
+                                : std::max(std::sqrt(squares[row]), 1e-6 * norms_[row]);
         for (Index j = 0; j < count(); ++j) {
           const double gap = std::abs(gaps(row, j)) / norm;
           if (!is_unresolved(gap, errors(row, j) / norm)) {

@@ -40,8 +40,7 @@ int bare(int n, const std::vector<int>& rows) {
   do n /= 2;
   while (n > 5);
   // planted: braces
-  while (next(n))
-    ;
+  while (next(n));
   // planted: braces
   for (int i = 0; i < n; ++i)
     // planted: braces
@@ -61,7 +60,8 @@ int braced(int n, const std::vector<int>& rows) {
     if (n) return 0;
     else return 1;)";
   const int elsewhere = n, form = 'i', if_any = 1, do_it = 0;
-  if (n == 1 && (rows.size() > 1 || rows.front() == f("(")))  // a bracket in a string
+  if (n == 1 &&
+      (rows.size() > 1 || rows.front() == f("(")))  // a bracket in a string
   {
     return 1;
   } else if (n == 2) {

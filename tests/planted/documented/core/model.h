@@ -26,7 +26,8 @@ struct BareStruct {
 };
 
 /// Documented, on two lines.
-[[nodiscard]] std::vector<int> documented(int a, int b);
+[[nodiscard]] std::vector<int> documented(int a,
+                                          int b);
 [[nodiscard]] std::vector<int> documented(int a);
 
 // planted: documented

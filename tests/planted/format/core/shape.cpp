@@ -2,6 +2,6 @@ namespace hbar {
 
 int right(int a) { return a + 1; }
 // planted: format
-int wrong(int a) { return a + 1; }
+int  wrong( int a ) { return a+1; }
 
 }  // namespace hbar

@@ -1,3 +1,5 @@
 #include <iostream>
 
-int main() { std::cout << model.name(); }
+int main() {
+  std::cout << model.name();
+}
