@@ -125,7 +125,6 @@ std::shared_ptr<const Mechanism<double>> Horizon::mechanism(const Eigen::VectorX
 
 void Horizon::check(const Inputs& inputs) const {
   check_input(inputs.p, "p", parameters().size(), 1);
-  require_in_range(parameters(), inputs.p);
   check_input(inputs.u, "u", model().control_count(), steps());
   check_input(inputs.q0, "q0", model().dof(), 1);
   check_input(inputs.qdot0, "qdot0", model().dof(), 1);

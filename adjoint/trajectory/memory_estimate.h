@@ -39,8 +39,7 @@ struct MemoryCounts {
 
 /// @param limit  SimulationOptions::max_memory, bytes
 /// @throws InvalidInput if simulation and gradient without factors would take more; it says what
-/// was
-///         estimated, what the limit is and what helps
+///   was estimated, what the limit is and what helps
 void require_memory(const Model& model, int steps, const MemoryEstimate& estimate, double limit);
 
 }  // namespace hbar

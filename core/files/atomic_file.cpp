@@ -90,14 +90,19 @@ mode_t new_file_mode() {
   return 0666 & ~mask;
 }
 
+/// A new temporary file: its descriptor and its name; −1 and errno if there is none.
+std::pair<int, std::string> make_temporary(const std::filesystem::path& folder) {
+  std::string name = (folder / kTemporary).string() + "XXXXXX";
+  const int descriptor = ::mkstemp(name.data());
+  return {descriptor, std::move(name)};
+}
+
 /// A new file beside `real`, locked while it is open: what nobody locks was left by a process that
 /// was killed. Between being made and locked it may have been removed as such; then it has no name.
 OpenFile open_temporary(const std::filesystem::path& real, const std::filesystem::path& path) {
-  const std::string pattern = (real.parent_path() / kTemporary).string() + "XXXXXX";
   constexpr int kTries = 100;
   for (int i = 0; i < kTries; ++i) {
-    std::string name = pattern;
-    const int descriptor = ::mkstemp(name.data());
+    const auto [descriptor, name] = make_temporary(real.parent_path());
     if (descriptor < 0) {
       fail(path, "written", errno);
     }
@@ -113,6 +118,15 @@ OpenFile open_temporary(const std::filesystem::path& real, const std::filesystem
 }
 
 }  // namespace
+
+int try_folder(const std::filesystem::path& folder) {
+  const auto [descriptor, name] = make_temporary(folder);
+  if (descriptor < 0) {
+    return errno;
+  }
+  const OpenFile removed(descriptor, name);
+  return 0;
+}
 
 void remove_abandoned_files(const std::filesystem::path& folder) {
   const std::unique_ptr<DIR, int (*)(DIR*)> entries(

@@ -90,13 +90,9 @@ void expect_result_file(const fs::path& path, const std::vector<fs::path>& input
   }
   const fs::path place = resolved(path).parent_path();
   remove_abandoned_files(place);
-  std::string probe = (place / ".hbar-tmp-XXXXXX").string();
-  const int descriptor = ::mkstemp(probe.data());
-  if (descriptor < 0) {
-    refuse(path, std::generic_category().message(errno));
+  if (const int code_of_folder = try_folder(place)) {
+    refuse(path, std::generic_category().message(code_of_folder));
   }
-  ::close(descriptor);
-  ::unlink(probe.c_str());
 }
 
 void write_result_file(const fs::path& path, std::string_view text) {

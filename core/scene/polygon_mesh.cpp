@@ -7,6 +7,7 @@
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/geometry/triangulate.h"
+#include "hbar/core/scene/text_lines.h"
 
 namespace hbar::scene {
 namespace {
@@ -20,8 +21,11 @@ std::vector<int> without_repeats(std::vector<int> corners) {
   return corners;
 }
 
-[[noreturn]] void fail(const std::string& name, int line, const std::string& what) {
-  throw InvalidInput(line > 0 ? concat(name, ":", line, ": ", what) : concat(name, ": ", what));
+[[noreturn]] void fail_in_face(const std::string& name, int line, const std::string& what) {
+  if (line > 0) {
+    fail_in_line(name, line, what);
+  }
+  throw InvalidInput(concat(name, ": ", what));
 }
 
 }  // namespace
@@ -40,8 +44,9 @@ MendedMesh triangulated(PolygonMesh polygons, const std::string& name) {
     }
     const auto repeated = std::adjacent_find(sorted.begin(), sorted.end());
     if (repeated != sorted.end()) {
-      fail(name, polygon.line,
-           concat("the face has vertex ", *repeated + 1, " twice; its corners must differ"));
+      fail_in_face(
+          name, polygon.line,
+          concat("the face has vertex ", *repeated + 1, " twice; its corners must differ"));
     }
     std::vector<Eigen::Vector3d> points;
     for (const int corner : corners) {
@@ -53,7 +58,7 @@ MendedMesh triangulated(PolygonMesh polygons, const std::string& name) {
         mesh.triangles.push_back({index(t[0]), index(t[1]), index(t[2])});
       }
     } catch (const InvalidInput& error) {
-      fail(name, polygon.line, error.what());
+      fail_in_face(name, polygon.line, error.what());
     }
   }
   MendedMesh mended = mend_mesh(std::move(mesh));

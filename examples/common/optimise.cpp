@@ -110,13 +110,25 @@ TranscriptionOptions transcription_options(const OptimiseArguments& arguments) {
   return options;
 }
 
+solvers::IpoptResult solve_and_keep(solvers::Nlp& program, const solvers::IpoptOptions& options,
+                                    const std::filesystem::path& solution,
+                                    const std::map<std::string, std::string>& about) {
+  solvers::IpoptResult result = solvers::solve_with_ipopt(
+      program, study::saving_checkpoints(program, options, solution, about));
+  try {
+    study::save_result(program, result, solution, about);
+  } catch (const IoError& error) {
+    report_lost(error);
+  }
+  return result;
+}
+
 Optimised optimise(Transcription& program, const OptimiseArguments& arguments,
                    solvers::IpoptOptions options) {
   options.hessian = find_hessian(arguments.hessian);
   options.max_iterations = arguments.max_iterations;
   options.stop = &stop_flag();
   options.checkpoint_every = arguments.save_every;
-  const std::filesystem::path solution = arguments.out / "solution.csv";
   expect_results(arguments.out, {"solution.csv", "iterations.csv", "trajectory.csv"});
   if (!arguments.resume.empty()) {
     options.warm_start = study::load_solution(arguments.resume, program);
@@ -135,16 +147,10 @@ Optimised optimise(Transcription& program, const OptimiseArguments& arguments,
 
   const TranscriptionTimes before = program.times();
   Optimised out;
-  const std::map<std::string, std::string> about = {{"formulation", arguments.formulation},
-                                                    {"hessian", arguments.hessian}};
-  out.result = solvers::solve_with_ipopt(
-      program, study::saving_checkpoints(program, options, solution, about));
+  out.result =
+      solve_and_keep(program, options, arguments.out / "solution.csv",
+                     {{"formulation", arguments.formulation}, {"hessian", arguments.hessian}});
   progress.end();
-  try {
-    study::save_result(program, out.result, solution, about);
-  } catch (const IoError& error) {
-    report_lost(error);
-  }
   out.iterations = progress.iterations();
   out.times = difference(program.times(), before);
   out.code = exit_code(out.result);

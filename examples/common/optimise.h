@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,13 @@ void add_save_option(CLI::App& app, double& save_every);
 /// The requested formulation and segments.
 /// @throws InvalidInput listing the known formulations
 [[nodiscard]] TranscriptionOptions transcription_options(const OptimiseArguments& arguments);
+
+/// Solves with Ipopt and keeps the result in a file, on the way and at the end. What cannot be
+/// written is reported as by write_result, and the result is returned all the same.
+[[nodiscard]] solvers::IpoptResult solve_and_keep(solvers::Nlp& program,
+                                                  const solvers::IpoptOptions& options,
+                                                  const std::filesystem::path& solution,
+                                                  const std::map<std::string, std::string>& about);
 
 /// The result of optimise.
 struct Optimised {

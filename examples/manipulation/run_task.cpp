@@ -101,20 +101,13 @@ double stage_of(const std::filesystem::path& file) {
 }
 
 /// One stage, from a point with or without multipliers.
-solvers::IpoptResult solve_stage(Transcription& program, solvers::IpoptOptions ipopt, double scale,
-                                 const TaskOptions& options) {
+solvers::IpoptResult solve_stage(Transcription& program, const solvers::IpoptOptions& ipopt,
+                                 double scale, const TaskOptions& options) {
   if (options.solution.empty()) {
     return solvers::solve_with_ipopt(program, ipopt);
   }
-  const std::map<std::string, std::string> about = {{kScaleEntry, scene::format_number(scale)}};
-  solvers::IpoptResult result = solvers::solve_with_ipopt(
-      program, study::saving_checkpoints(program, std::move(ipopt), options.solution, about));
-  try {
-    study::save_result(program, result, options.solution, about);
-  } catch (const IoError& error) {
-    example::report_lost(error);
-  }
-  return result;
+  return example::solve_and_keep(program, ipopt, options.solution,
+                                 {{kScaleEntry, scene::format_number(scale)}});
 }
 
 example::ExitCode run(const Task& task, const std::filesystem::path& out, TaskOptions options) {
@@ -182,7 +175,7 @@ TaskResult solve_task(const Task& task, const TaskOptions& options) {
     if (resumed) {
       ipopt.warm_start = study::load_solution(options.resume, *out.problem);
     }
-    out.last = solve_stage(*out.problem, std::move(ipopt), scale, options);
+    out.last = solve_stage(*out.problem, ipopt, scale, options);
     out.iterations += out.last.iterations;
     x = out.last.x;
     if (out.last.status == solvers::IpoptStatus::kInterrupted) {

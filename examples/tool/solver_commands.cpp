@@ -176,15 +176,16 @@ class Saver {
  public:
   explicit Saver(const SolverArguments& arguments) : arguments_(arguments) {}
 
-  void save(BenchmarkResults results) {
+  void save(const BenchmarkResults& results) {
     constexpr std::chrono::seconds kEvery(5);
     const auto now = std::chrono::steady_clock::now();
     if (arguments_.json == "-" || arguments_.csv == "-" || now - last_ < kEvery) {
       return;
     }
     last_ = now;
-    results.interrupted = true;
-    write_files(arguments_, results);
+    BenchmarkResults so_far = results;
+    so_far.interrupted = true;
+    write_files(arguments_, so_far);
   }
 
  private:

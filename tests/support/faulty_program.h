@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -141,6 +143,40 @@ inline std::string expected_ending(Fault fault, FaultyHs071::Function function,
       return found.find(" was resized to ") != std::string::npos ? found : "a refusal of the size";
   }
   return "";
+}
+
+/// Lets each function go wrong in every way at every call that a run makes, once and from there on.
+///
+/// @param solve   runs a program and returns the result
+/// @param expect  checks the result of a run that went wrong and returned one
+template <typename Solve, typename Expect>
+void expect_every_fault(const std::vector<FaultyHs071::Function>& functions, const Solve& solve,
+                        const Expect& expect) {
+  for (const FaultyHs071::Function function : functions) {
+    for (const Fault fault : kFaults) {
+      for (const bool onwards : {false, true}) {
+        int happened = 1;
+        for (int place = 1; happened > 0 && place < 40; ++place) {
+          FaultyHs071 program(function, fault, place, onwards);
+          decltype(solve(program)) result;
+          const std::string found = ending_of([&] { result = solve(program); });
+          happened = program.happened;
+          SCOPED_TRACE(concat("function ", static_cast<int>(function), ", fault ",
+                              static_cast<int>(fault), ", call ", place, onwards ? " on" : ""));
+          if (happened == 0) {
+            EXPECT_EQ(found, "returned");
+            EXPECT_TRUE(result.converged());
+            continue;
+          }
+          ASSERT_EQ(found, expected_ending(fault, function, found));
+          if (found == "returned") {
+            expect(result);
+          }
+        }
+        EXPECT_EQ(happened, 0);  // every call had its turn
+      }
+    }
+  }
 }
 
 }  // namespace hbar::solvers::testing

@@ -76,6 +76,32 @@ inline TriangleMesh star_mesh(int levels, unsigned seed) {
   return mesh;
 }
 
+/// The same elsewhere.
+inline TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by) {
+  for (Eigen::Vector3d& vertex : mesh.vertices) {
+    vertex += by;
+  }
+  return mesh;
+}
+
+/// The same with its other side outside.
+inline TriangleMesh turned_inside_out(TriangleMesh mesh) {
+  for (std::array<int, 3>& t : mesh.triangles) {
+    std::swap(t[1], t[2]);
+  }
+  return mesh;
+}
+
+/// Two surfaces in one mesh, each with vertices of its own.
+inline TriangleMesh together(TriangleMesh a, const TriangleMesh& b) {
+  const int first = static_cast<int>(a.vertices.size());
+  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (const std::array<int, 3>& t : b.triangles) {
+    a.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  return a;
+}
+
 /// A point with coordinates from −size to size.
 inline Eigen::Vector3d random_point(std::mt19937& engine, double size) {
   std::uniform_real_distribution<double> coordinate(-size, size);

@@ -109,14 +109,8 @@ TEST(MendMesh, SplitsAnEdgeAtSeveralVertices) {
 }
 
 TEST(MendMesh, SolidsThatShareAFaceAreOne) {
-  TriangleMesh two = box_mesh({1.0, 1.0, 1.0});
-  const TriangleMesh one = two;
-  for (const Eigen::Vector3d& vertex : one.vertices) {
-    two.vertices.push_back(vertex + Eigen::Vector3d(1.0, 0.0, 0.0));
-  }
-  for (const std::array<int, 3>& t : one.triangles) {
-    two.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
-  }
+  const TriangleMesh one = box_mesh({1.0, 1.0, 1.0});
+  TriangleMesh two = together(one, moved(one, Eigen::Vector3d::UnitX()));
   // The shared face is cut along the same diagonal on both sides: mirrored on one.
   two.triangles[10] = {1, 3, 7};
   two.triangles[11] = {1, 7, 5};

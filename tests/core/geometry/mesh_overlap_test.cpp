@@ -15,29 +15,6 @@ std::string refusal(const TriangleMesh& mesh) {
   return testing::message_of<InvalidInput>([&] { check_overlap(mesh); });
 }
 
-TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& by) {
-  for (Eigen::Vector3d& vertex : mesh.vertices) {
-    vertex += by;
-  }
-  return mesh;
-}
-
-TriangleMesh turned_inside_out(TriangleMesh mesh) {
-  for (std::array<int, 3>& t : mesh.triangles) {
-    std::swap(t[1], t[2]);
-  }
-  return mesh;
-}
-
-TriangleMesh together(TriangleMesh a, const TriangleMesh& b) {
-  const int first = static_cast<int>(a.vertices.size());
-  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-  for (const std::array<int, 3>& t : b.triangles) {
-    a.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-  }
-  return a;
-}
-
 TEST(CheckOverlap, AcceptsSolids) {
   EXPECT_EQ(refusal(box_mesh({1.0, 2.0, 3.0})), "");
   EXPECT_EQ(refusal(icosphere(1.0, 3)), "");

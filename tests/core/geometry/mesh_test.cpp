@@ -6,6 +6,7 @@
 #include <string>
 
 #include "hbar/core/base/error.h"
+#include "tests/support/solid_meshes.h"
 
 namespace hbar {
 namespace {
@@ -118,15 +119,9 @@ TEST(CheckSolid, RefusesWithTheWholeMessage) {
 }
 
 TEST(CheckSolid, ASurfaceMayTouchItself) {
-  TriangleMesh two = box({1.0, 1.0, 1.0});
-  const TriangleMesh one = two;
-  for (const Eigen::Vector3d& vertex : one.vertices) {
-    two.vertices.push_back(vertex + Eigen::Vector3d(1.0, 1.0, 0.0));
-  }
-  for (const std::array<int, 3>& t : one.triangles) {
-    two.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
-  }
-  const TriangleMesh touching = merge_equal_vertices(two);
+  const TriangleMesh one = box({1.0, 1.0, 1.0});
+  const TriangleMesh touching =
+      merge_equal_vertices(together(one, moved(one, Eigen::Vector3d(1.0, 1.0, 0.0))));
   ASSERT_EQ(touching.vertices.size(), 14U);  // an edge is shared
   EXPECT_TRUE(is_closed(touching));
   EXPECT_EQ(solid_refusal(touching), "accepted");

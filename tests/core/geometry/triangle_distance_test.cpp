@@ -264,14 +264,7 @@ TEST(TriangleDistance, RefusesWhatBoundsNoSolidAndSaysWhere) {
 TriangleMesh boxes(const std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>& centre_size) {
   TriangleMesh all;
   for (const auto& [centre, size] : centre_size) {
-    const int first = static_cast<int>(all.vertices.size());
-    const TriangleMesh box = box_mesh(size);
-    for (const Eigen::Vector3d& vertex : box.vertices) {
-      all.vertices.push_back(vertex + centre);
-    }
-    for (std::array<int, 3> t : box.triangles) {
-      all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    }
+    all = together(std::move(all), moved(box_mesh(size), centre));
   }
   return merge_equal_vertices(all);
 }
@@ -314,13 +307,7 @@ TEST(TriangleDistance, CavitiesThatTouchAreOutside) {
   TriangleMesh mesh = box_mesh({3.0, 3.0, 3.0});
   const std::vector<Eigen::Vector3d> centres = {{-0.5, -0.5, 0.0}, {0.5, 0.5, 0.0}};
   for (const Eigen::Vector3d& centre : centres) {
-    const int first = static_cast<int>(mesh.vertices.size());
-    for (const Eigen::Vector3d& vertex : box_mesh(kUnit).vertices) {
-      mesh.vertices.push_back(vertex + centre);
-    }
-    for (const std::array<int, 3>& t : box_mesh(kUnit).triangles) {
-      mesh.triangles.push_back({t[0] + first, t[2] + first, t[1] + first});
-    }
+    mesh = together(std::move(mesh), turned_inside_out(moved(box_mesh(kUnit), centre)));
   }
   const TriangleDistance distance(merge_equal_vertices(mesh));
   std::mt19937 random(2);

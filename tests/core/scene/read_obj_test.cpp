@@ -5,31 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "hbar/core/base/error.h"
+#include "tests/core/scene/bad_files.h"
 
 namespace hbar::scene {
 namespace {
 
 const std::string kVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
-
-struct BadFile {
-  const char* name;
-  std::string text;
-  std::string message;
-};
-
-template <typename Read>
-void expect_refused(const std::vector<BadFile>& files, Read&& read) {
-  for (const BadFile& file : files) {
-    SCOPED_TRACE(file.name);
-    try {
-      static_cast<void>(read(file.text, "bad"));
-      ADD_FAILURE() << "was read";
-    } catch (const InvalidInput& error) {
-      EXPECT_EQ(error.what(), file.message);
-    }
-  }
-}
 
 using Faces = std::vector<std::vector<int>>;
 

@@ -6,28 +6,10 @@
 #include <vector>
 
 #include "hbar/core/base/error.h"
+#include "tests/core/scene/bad_files.h"
 
 namespace hbar::scene {
 namespace {
-
-struct BadPoints {
-  const char* name;
-  std::string text;
-  std::string message;
-};
-
-template <typename Read>
-void expect_points_refused(const std::vector<BadPoints>& files, Read&& read) {
-  for (const BadPoints& file : files) {
-    SCOPED_TRACE(file.name);
-    try {
-      static_cast<void>(read(file.text, "bad"));
-      ADD_FAILURE() << "was read";
-    } catch (const InvalidInput& error) {
-      EXPECT_EQ(error.what(), file.message);
-    }
-  }
-}
 
 TEST(ReadContacts, ReadsACountAndPoints) {
   const auto points = read_contacts_text("2\n1 2 3\n\n4 5 6\n", "c.txt");
@@ -38,7 +20,7 @@ TEST(ReadContacts, ReadsACountAndPoints) {
 }
 
 TEST(ReadContacts, RefusesWithTheWholeMessage) {
-  expect_points_refused(
+  expect_refused(
       {{"empty", "", "bad:1: the file is empty; it begins with the number of points"},
        {"no count", "1 2 3\n",
         "bad:1: the file begins with the number of points, alone in its line"},
@@ -69,7 +51,7 @@ TEST(ReadSensorPoints, ReadsPointsWithAxesOfUnitLength) {
 
 TEST(ReadSensorPoints, RefusesWithTheWholeMessage) {
   const std::string parallel = "bad:2: the axes a0 and a1 are zero or parallel; they span a plane";
-  expect_points_refused(
+  expect_refused(
       {{"no axes", "1\n1 2 3\n",
         "bad:2: found 3 words; a point is x y z, then its axes a0x a0y a0z and a1x a1y a1z"},
        {"not a number", "1\n1 2 3 1 0 0 0 x 0\n",

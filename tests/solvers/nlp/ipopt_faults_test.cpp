@@ -9,10 +9,7 @@ namespace hbar::solvers {
 namespace {
 
 using testing::ending_of;
-using testing::expected_ending;
-using testing::Fault;
 using testing::FaultyHs071;
-using testing::kFaults;
 using Function = FaultyHs071::Function;
 
 /// Whatever happened, no number that was reached is one that is none.
@@ -32,35 +29,16 @@ void expect_finite(const IpoptResult& result) {
 }
 
 TEST(IpoptFaults, OfEveryFunctionAtEveryCall) {
-  for (const Function function : {Function::kObjective, Function::kGradient, Function::kConstraints,
-                                  Function::kJacobian, Function::kHessian}) {
-    for (const Fault fault : kFaults) {
-      for (const bool onwards : {false, true}) {
-        int happened = 1;
-        for (int place = 1; happened > 0 && place < 40; ++place) {
-          FaultyHs071 program(function, fault, place, onwards);
-          IpoptOptions options;
-          options.hessian = HessianKind::kExact;
-          options.max_iterations = 60;
-          IpoptResult result;
-          const std::string found = ending_of([&] { result = solve_with_ipopt(program, options); });
-          happened = program.happened;
-          SCOPED_TRACE(concat("function ", static_cast<int>(function), ", fault ",
-                              static_cast<int>(fault), ", call ", place, onwards ? " on" : ""));
-          if (happened == 0) {
-            EXPECT_EQ(found, "returned");
-            EXPECT_TRUE(result.converged());
-            continue;
-          }
-          ASSERT_EQ(found, expected_ending(fault, function, found));
-          if (found == "returned") {
-            expect_finite(result);
-          }
-        }
-        EXPECT_EQ(happened, 0);  // every call had its turn
-      }
-    }
-  }
+  testing::expect_every_fault(
+      {Function::kObjective, Function::kGradient, Function::kConstraints, Function::kJacobian,
+       Function::kHessian},
+      [](FaultyHs071& program) {
+        IpoptOptions options;
+        options.hessian = HessianKind::kExact;
+        options.max_iterations = 60;
+        return solve_with_ipopt(program, options);
+      },
+      expect_finite);
 }
 
 TEST(IpoptFaults, OfEveryCallbackAtEveryCall) {

@@ -9,8 +9,6 @@ namespace hbar::solvers {
 namespace {
 
 using testing::ending_of;
-using testing::expected_ending;
-using testing::Fault;
 using testing::FaultyHs071;
 using Function = FaultyHs071::Function;
 
@@ -28,38 +26,17 @@ void expect_finite(const NloptResult& result) {
 }
 
 TEST(NloptFaults, OfEveryFunctionAtEveryCall) {
-  for (const Function function :
-       {Function::kObjective, Function::kGradient, Function::kConstraints, Function::kJacobian}) {
-    for (const Fault fault : testing::kFaults) {
-      for (const bool onwards : {false, true}) {
-        int happened = 1;
-        for (int place = 1; happened > 0 && place < 40; ++place) {
-          FaultyHs071 program(function, fault, place, onwards);
-          NloptOptions options;
-          options.algorithm = NloptAlgorithm::kSlsqp;
-          options.max_evaluations = 200;
-          options.optimality_tolerance = 1e-5;
-          program.limits_.scale = Eigen::Vector2d(5.0, 20.0);
-          NloptResult result;
-          const std::string found =
-              ending_of([&] { result = minimise_with_nlopt(program, options); });
-          happened = program.happened;
-          SCOPED_TRACE(concat("function ", static_cast<int>(function), ", fault ",
-                              static_cast<int>(fault), ", call ", place, onwards ? " on" : ""));
-          if (happened == 0) {
-            EXPECT_EQ(found, "returned");
-            EXPECT_TRUE(result.converged());
-            continue;
-          }
-          ASSERT_EQ(found, expected_ending(fault, function, found));
-          if (found == "returned") {
-            expect_finite(result);
-          }
-        }
-        EXPECT_EQ(happened, 0);  // every call had its turn
-      }
-    }
-  }
+  testing::expect_every_fault(
+      {Function::kObjective, Function::kGradient, Function::kConstraints, Function::kJacobian},
+      [](FaultyHs071& program) {
+        NloptOptions options;
+        options.algorithm = NloptAlgorithm::kSlsqp;
+        options.max_evaluations = 200;
+        options.optimality_tolerance = 1e-5;
+        program.limits_.scale = Eigen::Vector2d(5.0, 20.0);
+        return minimise_with_nlopt(program, options);
+      },
+      expect_finite);
 }
 
 TEST(NloptFaults, OfTheCallbackAtEveryCall) {
