@@ -2,9 +2,10 @@
 //
 //   HBAR_FAULT=malloc:7    the 7th allocation returns nothing
 //   HBAR_FAULT=malloc+:7   and so do all that follow
-//   HBAR_FAULT=write:2     the 2nd write to a file fails; fsync, rename, fchmod, mkstemp, close
-//   likewise HBAR_FAULT=short:1     every write takes 100 bytes at most, and every other is
-//   interrupted HBAR_FAULT_COUNT=FILE  at the end, how many of each there were
+//   HBAR_FAULT=write:2     the 2nd write to a file fails; likewise fsync, rename, fchmod, mkstemp,
+//                          close
+//   HBAR_FAULT=short:1     every write takes 100 bytes at most, and every other is interrupted
+//   HBAR_FAULT_COUNT=FILE  at the end, how many of each there were
 //
 // It must not allocate itself, hence C's functions alone.
 #include <dlfcn.h>
@@ -68,7 +69,14 @@ const Fault& fault() {
   return known;
 }
 
+/// Set when every library has initialised itself, which some of them do not survive without memory;
+/// the program's own objects are still to come.
+std::atomic<bool> started = false;
+
 bool fails(Kind kind) {
+  if (!started) {
+    return false;
+  }
   const long count = ++counts[kind];
   return fault().kind == kind &&
          (count == fault().place || (fault().onwards && count > fault().place));
@@ -98,6 +106,14 @@ __attribute__((destructor)) void tell_counts() {
 }  // namespace
 
 extern "C" {
+
+// What the program calls when its libraries are ready (glibc, csu/libc-start.c).
+int __libc_start_main(int (*main)(int, char**, char**), int argc, char** argv, void (*init)(),
+                      void (*fini)(), void (*rtld_fini)(), void* stack_end) {
+  auto* real = next<decltype(&__libc_start_main)>("__libc_start_main");
+  started = true;
+  return real(main, argc, argv, init, fini, rtld_fini, stack_end);
+}
 
 void* malloc(size_t size) {
   if (fails(kMalloc)) {

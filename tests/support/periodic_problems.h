@@ -18,6 +18,7 @@ namespace hbar::testing {
   ModelBuilder builder("driven pendulum");
   builder.set_gravity({0.0, 0.0, -9.8});
   Joint shoulder{.name = "shoulder", .kind = RevoluteJoint{{0.0, 1.0, 0.0}}, .damping = 0.8};
+  shoulder.stiffness = 0.3;
   const RigidTransform<double> middle{Eigen::Matrix3d::Identity(), {0.0, 0.0, -0.25}};
   const int upper =
       builder.add_link(-1, shoulder, solid_body("upper", Cuboid{{0.05, 0.05, 0.5}}, 800.0, middle),

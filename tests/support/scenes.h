@@ -24,10 +24,10 @@ inline const Eigen::Vector3d kGravity{0.0, 0.0, -9.81};
 /// One body on a joint at the world's origin, its centre of mass at the origin too; an end effector
 /// off all of its axes.
 [[nodiscard]] inline Model single_body(const JointKind& kind, const Eigen::Vector3d& gravity,
-                                       double stiffness = 0.0) {
+                                       double stiffness = 0.0, double damping = 0.0) {
   ModelBuilder builder("single body");
   builder.set_gravity(gravity);
-  Joint joint{.name = "joint", .kind = kind, .stiffness = stiffness};
+  Joint joint{.name = "joint", .kind = kind, .damping = damping, .stiffness = stiffness};
   builder.add_link(-1, joint, body_at(Eigen::Vector3d::Zero(), 2.0, {0.3, 0.5, 0.7}, "body"));
   builder.add_end_effector({.name = "tip", .link = 0, .position = {0.4, -0.3, 0.5}});
   return builder.build();
@@ -69,8 +69,11 @@ inline const Eigen::Vector3d kGravity{0.0, 0.0, -9.81};
   builder.set_gravity(kGravity);
   Joint shoulder{.name = "shoulder", .kind = RevoluteJoint{{0.0, 1.0, 0.0}}};
   shoulder.limits = JointLimits{-0.2, 0.2, 1e8};
+  shoulder.damping = 0.01;
+  shoulder.stiffness = 0.1;
   Joint elbow{.name = "elbow", .kind = RevoluteJoint{{0.6, 0.8, 0.0}}, .damping = 0.01};
   elbow.X_PJ.p = {0.0, 0.0, -0.8};
+  elbow.stiffness = 0.1;
   builder.add_link(-1, shoulder, body_at({0.0, 0.1, -0.4}, 1.5, {0.08, 0.09, 0.05}, "upper"));
   builder.add_link(0, elbow, body_at({0.1, 0.0, -0.3}, 0.9, {0.05, 0.05, 0.04}, "lower"));
   builder.add_motor({.link = 1,

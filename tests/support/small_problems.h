@@ -23,6 +23,7 @@ namespace hbar::testing {
   };
   Joint base{.name = "base", .kind = Free3dExpJoint{}, .X_PJ = pose(0.1, 0.2, 0.3, 0.4)};
   base.damping = 0.05;
+  base.stiffness = 0.2;
   const int trunk = builder.add_link(
       -1, base, solid_body("trunk", Cuboid{{0.3, 0.4, 0.5}}, 20.0, pose(0.02, 0.01, -0.03, 0.3)),
       "trunk", kMaskAll);
@@ -42,6 +43,7 @@ namespace hbar::testing {
   Joint slider{.name = "slider", .kind = PrismaticJoint{{1.0, 0.0, 0.5}}};
   slider.X_PJ = pose(-0.2, 0.1, 0.1, 0.9);
   slider.stiffness = 30.0;
+  slider.damping = 0.4;
   const int weight = builder.add_link(
       trunk, slider, solid_body("weight", Cylinder{0.1, 0.2}, 200.0, pose(0.0, 0.1, 0.0, 0.6)),
       "weight", kMaskAll);
@@ -62,6 +64,8 @@ namespace hbar::testing {
   ModelBuilder builder("spinning");
   builder.set_gravity({0.0, 0.0, -1.0});
   Joint joint{.name = "free", .kind = Free3dExpJoint{}};
+  joint.stiffness = 0.01;
+  joint.damping = 0.01;
   const int body = builder.add_link(-1, joint, solid_body("brick", Cuboid{{0.3, 0.2, 0.1}}, 500.0),
                                     "brick", kMaskAll);
   builder.add_end_effector({.name = "corner", .link = body, .position = {0.15, 0.1, 0.05}});

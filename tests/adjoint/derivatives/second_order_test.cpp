@@ -9,6 +9,7 @@
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/adjoint/trajectory/value_reader.h"
 #include "hbar/core/base/error.h"
+#include "hbar/core/parameters/parameter_kinds.h"
 #include "tests/support/input_vector.h"
 #include "tests/support/message_of.h"
 #include "tests/support/small_problems.h"
@@ -27,6 +28,19 @@ Eigen::VectorXd some_direction(const Inputs& inputs, unsigned seed) {
   return random.vector(x.size()).cwiseProduct(x.cwiseAbs().cwiseMin(1.0).cwiseMax(0.02));
 }
 
+/// The problem with coefficients off the ends of their ranges, so that both sides can be
+/// differenced.
+Problem inside(Problem problem) {
+  const ParameterSet& set = problem.horizon.parameters();
+  for (int k = 0; k < set.size(); ++k) {
+    double& value = problem.inputs.p[k];
+    if (row_of(set[k].kind).range == ParameterRange::kNonNegative && value == 0.0) {
+      value = 0.05;
+    }
+  }
+  return problem;
+}
+
 struct NamedProblem {
   std::string name;
   Problem (*make)();
@@ -38,8 +52,8 @@ const std::vector<NamedProblem>& second_order_problems() {
       {"Sdirk2", [] { return testing::small_problem("sdirk2"); }},
       {"Bdf2", [] { return testing::small_problem("bdf2"); }},
       {"ChartChange", [] { return testing::spinning_problem("bdf2"); }},
-      {"ContactBdf1", [] { return testing::contact_problem("bdf1", 0.002, 40); }},
-      {"ContactBdf2", [] { return testing::contact_problem("bdf2", 0.002, 40); }}};
+      {"ContactBdf1", [] { return inside(testing::contact_problem("bdf1", 0.002, 40)); }},
+      {"ContactBdf2", [] { return inside(testing::contact_problem("bdf2", 0.002, 40)); }}};
   return all;
 }
 
