@@ -11,11 +11,18 @@ namespace {
 
 class AffineMap final : public DesignMap {
  public:
-  AffineMap(DesignVariables variables, Eigen::VectorXd base, Eigen::MatrixXd slopes)
-      : variables_(std::move(variables)), base_(std::move(base)), slopes_(std::move(slopes)) {}
+  AffineMap(DesignVariables variables, Eigen::VectorXd base, Eigen::MatrixXd slopes,
+            std::vector<std::string> parameter_names)
+      : variables_(std::move(variables)),
+        base_(std::move(base)),
+        slopes_(std::move(slopes)),
+        parameter_names_(std::move(parameter_names)) {}
 
   [[nodiscard]] const DesignVariables& variables() const override { return variables_; }
   [[nodiscard]] Eigen::Index parameter_count() const override { return base_.size(); }
+  [[nodiscard]] std::vector<std::string> parameter_names() const override {
+    return parameter_names_;
+  }
   [[nodiscard]] bool depends(Eigen::Index parameter, Eigen::Index variable) const override {
     return slopes_(parameter, variable) != 0.0;
   }
@@ -32,12 +39,21 @@ class AffineMap final : public DesignMap {
   DesignVariables variables_;
   Eigen::VectorXd base_;
   Eigen::MatrixXd slopes_;
+  std::vector<std::string> parameter_names_;
 };
+
+std::vector<std::string> names_of(const ParameterSet& set) {
+  std::vector<std::string> out;
+  for (const Parameter& parameter : set.parameters()) {
+    out.push_back(parameter.name);
+  }
+  return out;
+}
 
 DesignVariables identity_variables(const ParameterSet& set) {
   DesignVariables out;
+  out.names = names_of(set);
   for (const Parameter& parameter : set.parameters()) {
-    out.names.push_back(parameter.name);
     out.units.push_back(parameter.unit);
   }
   out.start = set.nominal();
@@ -48,9 +64,10 @@ DesignVariables identity_variables(const ParameterSet& set) {
 }
 
 /// p = slopes d.
-DesignMapPointer linear_map(DesignVariables variables, Eigen::MatrixXd slopes) {
-  const Eigen::Index count = slopes.rows();
-  return affine_map(std::move(variables), Eigen::VectorXd::Zero(count), std::move(slopes));
+DesignMapPointer linear_map(const ParameterSet& set, DesignVariables variables,
+                            Eigen::MatrixXd slopes) {
+  return std::make_shared<AffineMap>(std::move(variables), Eigen::VectorXd::Zero(set.size()),
+                                     std::move(slopes), names_of(set));
 }
 
 }  // namespace
@@ -64,7 +81,8 @@ DesignMapPointer affine_map(DesignVariables variables, Eigen::VectorXd base,
   if (!base.allFinite() || !slopes.allFinite()) {
     throw InvalidInput("affine_map: base and slopes must be finite");
   }
-  return std::make_shared<AffineMap>(std::move(variables), std::move(base), std::move(slopes));
+  return std::make_shared<AffineMap>(std::move(variables), std::move(base), std::move(slopes),
+                                     std::vector<std::string>());
 }
 
 DesignMapPointer parameter_map(const ParameterSet& set,
@@ -72,6 +90,10 @@ DesignMapPointer parameter_map(const ParameterSet& set,
   DesignVariables variables = identity_variables(set);
   for (const ParameterBounds& own : bounds) {
     const int i = set.find(own.name);
+    if (std::isfinite(own.lower) && own.lower < 0.0 && variables.lower[i] >= 0.0) {
+      throw InvalidInput(concat("parameter_map: the lower bound of ", own.name, " is ", own.lower,
+                                "; it must be ≥ 0"));
+    }
     variables.lower[i] = std::max(variables.lower[i], own.lower);
     variables.upper[i] = std::min(variables.upper[i], own.upper);
     const double start = variables.start[i];
@@ -85,7 +107,7 @@ DesignMapPointer parameter_map(const ParameterSet& set,
       variables.scale[i] = 0.25 * room;
     }
   }
-  return linear_map(std::move(variables), Eigen::MatrixXd::Identity(set.size(), set.size()));
+  return linear_map(set, std::move(variables), Eigen::MatrixXd::Identity(set.size(), set.size()));
 }
 
 DesignMapPointer inertia_chart(const ParameterSet& set, double least_share) {
@@ -116,7 +138,7 @@ DesignMapPointer inertia_chart(const ParameterSet& set, double least_share) {
     slopes.block<3, 3>(block.first, block.first) =
         Eigen::Matrix3d::Ones() - Eigen::Matrix3d::Identity();
   }
-  return linear_map(std::move(variables), std::move(slopes));
+  return linear_map(set, std::move(variables), std::move(slopes));
 }
 
 }  // namespace hbar

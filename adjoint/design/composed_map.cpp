@@ -17,6 +17,9 @@ class ComposedMap final : public DesignMap {
 
   [[nodiscard]] const DesignVariables& variables() const override { return inner_->variables(); }
   [[nodiscard]] Eigen::Index parameter_count() const override { return outer_->parameter_count(); }
+  [[nodiscard]] std::vector<std::string> parameter_names() const override {
+    return outer_->parameter_names();
+  }
   [[nodiscard]] bool depends(Eigen::Index parameter, Eigen::Index variable) const override {
     for (Eigen::Index k = 0; k < inner_->parameter_count(); ++k) {
       if (outer_->depends(parameter, k) && inner_->depends(k, variable)) {

@@ -50,6 +50,9 @@ class DesignMap {
   [[nodiscard]] virtual const DesignVariables& variables() const = 0;
   /// Size of p.
   [[nodiscard]] virtual Eigen::Index parameter_count() const = 0;
+  /// Names of the parameters, in their order, where the map knows them; a program refuses a map of
+  /// others than its own. Empty (as this default) where it does not.
+  [[nodiscard]] virtual std::vector<std::string> parameter_names() const { return {}; }
   /// The parameters p(d).
   ///
   /// @param d  design variables                                                   [d]

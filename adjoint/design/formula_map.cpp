@@ -13,14 +13,20 @@ using Eigen::Index;
 
 class FormulaMap final : public DesignMap {
  public:
-  FormulaMap(DesignVariables variables, detail::MapFormula formula)
-      : variables_(std::move(variables)), formula_(std::move(formula)) {
+  FormulaMap(DesignVariables variables, detail::MapFormula formula,
+             std::vector<std::string> parameter_names)
+      : variables_(std::move(variables)),
+        formula_(std::move(formula)),
+        parameter_names_(std::move(parameter_names)) {
     count_ = parameters(variables_.start).size();
     find_dependence();
   }
 
   [[nodiscard]] const DesignVariables& variables() const override { return variables_; }
   [[nodiscard]] Index parameter_count() const override { return count_; }
+  [[nodiscard]] std::vector<std::string> parameter_names() const override {
+    return parameter_names_;
+  }
   [[nodiscard]] bool depends(Index parameter, Index variable) const override {
     return depends_(parameter, variable);
   }
@@ -122,6 +128,7 @@ class FormulaMap final : public DesignMap {
 
   DesignVariables variables_;
   detail::MapFormula formula_;
+  std::vector<std::string> parameter_names_;
   Index count_ = -1;  // of parameters; −1: not known yet
   Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> depends_;
 };
@@ -132,6 +139,7 @@ NamedParameters::NamedParameters(const ParameterSet& set) {
   for (int i = 0; i < set.size(); ++i) {
     places_.emplace(set[i].name, i);
     values_.emplace_back(set[i].nominal);
+    names_.push_back(set[i].name);
   }
 }
 
@@ -148,8 +156,10 @@ HyperDual& NamedParameters::operator[](std::string_view name) {
   return values_[static_cast<std::size_t>(found->second)];
 }
 
-DesignMapPointer detail::make_formula_map(DesignVariables variables, MapFormula formula) {
-  return std::make_shared<FormulaMap>(std::move(variables), std::move(formula));
+DesignMapPointer detail::make_formula_map(DesignVariables variables, MapFormula formula,
+                                          std::vector<std::string> parameter_names) {
+  return std::make_shared<FormulaMap>(std::move(variables), std::move(formula),
+                                      std::move(parameter_names));
 }
 
 }  // namespace hbar

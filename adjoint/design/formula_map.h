@@ -24,10 +24,12 @@ class NamedParameters {
   [[nodiscard]] HyperDual& operator[](std::string_view name);
 
   [[nodiscard]] const std::vector<HyperDual>& values() const { return values_; }
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
 
  private:
   std::map<std::string, int, std::less<>> places_;
-  std::vector<HyperDual> values_;  // in the set's order
+  std::vector<HyperDual> values_;   // in the set's order
+  std::vector<std::string> names_;  // in the same
 };
 
 namespace detail {
@@ -35,7 +37,8 @@ namespace detail {
 /// Writes p(d), in the set's order.
 using MapFormula = std::function<void(std::span<const HyperDual> d, std::vector<HyperDual>& p)>;
 
-[[nodiscard]] DesignMapPointer make_formula_map(DesignVariables variables, MapFormula formula);
+[[nodiscard]] DesignMapPointer make_formula_map(DesignVariables variables, MapFormula formula,
+                                                std::vector<std::string> parameter_names = {});
 
 }  // namespace detail
 
@@ -72,13 +75,16 @@ template <std::invocable<std::span<const HyperDual>> Formula>
 template <std::invocable<std::span<const HyperDual>, NamedParameters&> Formula>
 [[nodiscard]] DesignMapPointer formula_map(const ParameterSet& set, DesignVariables variables,
                                            Formula formula) {
-  return detail::make_formula_map(std::move(variables),
-                                  [formula = std::move(formula), nominal = NamedParameters(set)](
-                                      std::span<const HyperDual> d, std::vector<HyperDual>& p) {
-                                    NamedParameters named = nominal;
-                                    formula(d, named);
-                                    p = named.values();
-                                  });
+  const NamedParameters nominal(set);
+  return detail::make_formula_map(
+      std::move(variables),
+      [formula = std::move(formula), nominal](std::span<const HyperDual> d,
+                                              std::vector<HyperDual>& p) {
+        NamedParameters named = nominal;
+        formula(d, named);
+        p = named.values();
+      },
+      nominal.names());
 }
 
 }  // namespace hbar

@@ -27,7 +27,7 @@ struct TranscriptionOptions {
   int segments = 8;
   int threads = 0;  ///< that evaluate segments; 0: one per core
   /// A first guess of the motion where that is a variable; empty: the motion simulated from the
-  /// start values, and rest from where that fails.                              [dof x N+1]
+  /// start values, and rest from where that fails. It begins with the start's q0. [dof x N+1]
   Eigen::MatrixXd q_guess = {};
 };
 

@@ -35,6 +35,15 @@ void require_map(const TrajectoryProblem& problem) {
                               " parameters; the horizon has ",
                               problem.horizon.parameters().size()));
   }
+  const std::vector<std::string> names = problem.map->parameter_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::string& own = problem.horizon.parameters()[static_cast<int>(k)].name;
+    if (names[k] != own) {
+      throw InvalidInput(
+          concat("TrajectoryProblem: the map is of another parameter set: parameter ", k, " is ",
+                 names[k], " there and ", own, " in the horizon"));
+    }
+  }
   for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
     require_given("TrajectoryProblem", concat("constraint ", i), problem.constraints[i]);
   }

@@ -1,5 +1,8 @@
 #include "hbar/adjoint/programs/state_guess.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "hbar/adjoint/trajectory/simulator.h"
 #include "hbar/core/base/error.h"
 
@@ -15,6 +18,14 @@ Eigen::MatrixXd guess_states(const TrajectoryProblem& problem, const InputVariab
     if (q_guess.rows() != dof || q_guess.cols() != steps + 1 || !q_guess.allFinite()) {
       throw InvalidInput(concat("transcription: q_guess is ", q_guess.rows(), " x ", q_guess.cols(),
                                 "; it must be ", dof, " x ", steps + 1, " and finite"));
+    }
+    const Eigen::VectorXd q0 = head.inputs(head.variables().start).q0;
+    for (Eigen::Index i = 0; i < dof; ++i) {
+      if (std::abs(q_guess(i, 0) - q0[i]) > 1e-6 * std::max(1.0, std::abs(q0[i]))) {
+        throw InvalidInput(concat("transcription: q_guess begins with ", q_guess(i, 0), " for '",
+                                  horizon.model().coordinate_name(static_cast<int>(i)),
+                                  "'; the motion begins with q0 = ", q0[i]));
+      }
     }
     out.topRows(dof) = q_guess;
     out.bottomRows(dof).rightCols(steps) =

@@ -10,8 +10,8 @@ namespace hbar {
 ///
 /// @param q_guess  empty, or                                                  [dof x N+1]
 /// @returns                                                                   [2 dof x N+1]
-/// @throws InvalidInput if q_guess has another shape or is not finite, or exponential coordinates
-///         change chart in the simulation
+/// @throws InvalidInput if q_guess has another shape, is not finite or does not begin with q0 (by
+///         1e-6 of it or of 1), or exponential coordinates change chart in the simulation
 [[nodiscard]] Eigen::MatrixXd guess_states(const TrajectoryProblem& problem,
                                            const InputVariables& head,
                                            const Eigen::MatrixXd& q_guess);

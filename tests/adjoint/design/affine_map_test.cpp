@@ -72,7 +72,7 @@ TEST(ParameterMap, NarrowsTheBoundsOfParametersThatAreNamed) {
   EXPECT_DOUBLE_EQ(map->variables().scale[i], 0.25 * mass);
   EXPECT_EQ(map->variables().lower[i + 1], set.lower()[i + 1]);
   // The set's own bounds still hold: a mass is positive.
-  EXPECT_EQ(parameter_map(set, {{.name = "body.arm.mass", .lower = -3.0}})->variables().lower[i],
+  EXPECT_EQ(parameter_map(set, {{.name = "body.arm.mass", .lower = 0.0}})->variables().lower[i],
             set.lower()[i]);
 }
 
@@ -85,6 +85,8 @@ TEST(ParameterMap, RefusesANameThatIsNotThereAndBoundsWithoutTheNominalValue) {
   EXPECT_NE(refusal({.name = "body.arm.mass", .lower = 1e3})
                 .find("which is not within its bounds, 1000 to inf"),
             std::string::npos);
+  EXPECT_EQ(refusal({.name = "body.arm.mass", .lower = -3.0}),
+            "parameter_map: the lower bound of body.arm.mass is -3; it must be ≥ 0");
 }
 
 TEST(InertiaChart, StartsAtTheNominalBodyAndIsRight) {

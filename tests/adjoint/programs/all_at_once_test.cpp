@@ -120,6 +120,7 @@ TEST(AllAtOnce, BeginsAtAGuessOfTheMotion) {
   const Eigen::Index dof = problem.q0.size();
   TranscriptionOptions options = kWhole;
   options.q_guess = 0.1 * testing::Random(4).matrix(dof, 4);
+  options.q_guess.col(0) = problem.q0;
   const AllAtOnce whole(problem, options);
   const Timeline timeline = even_timeline(find_integrator("bdf2"), 0.02, 3);
   ASSERT_EQ(timeline.last_stage(), 4);

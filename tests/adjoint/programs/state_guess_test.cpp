@@ -64,6 +64,7 @@ TEST(StateGuess, RestsFromWhereTheSimulationFails) {
 
 TEST(StateGuess, TakesAGuessOfTheMotionWithItsDifferenceQuotients) {
   TrajectoryProblem problem = guessed_problem(testing::double_pendulum());
+  problem.q0 = Eigen::Vector2d(0.0, 1.0);
   const InputVariables head(problem);
   Eigen::MatrixXd q_guess(2, kGuessedSteps + 1);
   for (int k = 0; k <= kGuessedSteps; ++k) {
