@@ -10,7 +10,7 @@ set -eu
 
 build="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev coinor-libipopt-dev
        liblapack-dev libmumps-seq-dev libnlopt-dev libtinyxml2-dev libcli11-dev
-       nlohmann-json3-dev libfmt-dev"
+       nlohmann-json3-dev libfmt-dev zlib1g-dev"
 test="python3 git libgtest-dev"
 fuzz="clang"
 # Left out with a message where the distribution has none: one of each line is enough.

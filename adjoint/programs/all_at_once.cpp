@@ -23,6 +23,7 @@ Trajectory empty_trajectory(const Horizon& horizon) {
   Trajectory out;
   out.model = horizon.shared_model();
   out.parameters = horizon.parameters();
+  out.integrator = horizon.integrator().name;
   out.timeline = even_timeline(horizon.integrator(), options.h, options.steps, options.restarts);
   out.q.setZero(horizon.model().dof(), out.timeline.stage_count());
   out.qdot.setZero(horizon.model().dof(), out.timeline.stage_count());

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hbar/adjoint/trajectory/horizon.h"
+#include "hbar/adjoint/trajectory/integrator.h"
 #include "hbar/adjoint/trajectory/trajectory.h"
 #include "hbar/core/base/error.h"
 
@@ -47,6 +48,10 @@ void require_trajectory_of(const Horizon& horizon, const Trajectory& trajectory)
     refuse(concat("it was simulated with ", trajectory.parameters.size(),
                   " free parameters, the horizon has ", horizon.parameters().size(),
                   trajectory.parameters.size() == horizon.parameters().size() ? " others" : ""));
+  }
+  if (trajectory.integrator != horizon.integrator().name) {
+    refuse(concat("its steps are ", trajectory.integrator, "'s, the horizon's are ",
+                  horizon.integrator().name, "'s"));
   }
   const int steps = trajectory.step_count();
   if (steps > horizon.steps()) {

@@ -147,6 +147,7 @@ Rollout Simulator::rollout(const Inputs& inputs) {
   Trajectory trajectory;
   trajectory.model = horizon_.shared_model();
   trajectory.parameters = horizon_.parameters();
+  trajectory.integrator = horizon_.integrator().name;
   trajectory.inputs = inputs;
   trajectory.mechanism = horizon_.mechanism(inputs.p);
   work_->system.mechanism = trajectory.mechanism.get();

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "hbar/adjoint/trajectory/inputs.h"
@@ -22,6 +23,7 @@ struct ChartSwitch {
 struct Trajectory {
   std::shared_ptr<const Model> model;  ///< whose it is
   ParameterSet parameters;             ///< of inputs.p
+  std::string integrator;              ///< name of the method of its steps
   Timeline timeline;
   Inputs inputs;  ///< what it was computed from
   /// The model's numbers with inputs.p applied, computed once for all that read the trajectory.

@@ -49,9 +49,10 @@ bool ends_with(const std::string& text, std::string_view end) {
   return text.size() > end.size() && text.ends_with(end);
 }
 
-/// NAME_b.mtx for NAME.mtx.
+/// NAME_b.mtx, or NAME_b.mtx.gz if only that is there, beside NAME.mtx.
 fs::path beside(const fs::path& file, const char* end) {
-  return file.parent_path() / (file.stem().string() + end);
+  fs::path out = file.parent_path() / (matrix_name(file) + end);
+  return fs::exists(out) ? out : out += ".gz";
 }
 
 /// The structure that the numbers themselves show.
@@ -76,6 +77,18 @@ solvers::Structure structure_of(const solvers::SparseMatrix& A) {
 }
 
 }  // namespace
+
+std::string matrix_name(const fs::path& file) {
+  std::string name = file.filename();
+  for (const std::string_view end : {".gz", ".mtx"}) {
+    if (ends_with(name, end)) {
+      name.resize(name.size() - end.size());
+    } else if (end == ".mtx") {
+      return {};
+    }
+  }
+  return name;
+}
 
 std::string_view name_of(CorpusSize size) {
   constexpr std::array<std::string_view, 3> kNames = {"small", "medium", "large"};
@@ -131,8 +144,9 @@ std::vector<fs::path> find_matrix_files(const fs::path& folder) {
   std::error_code code;
   std::set<std::string> names;
   for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
-    if (at->path().extension() == ".mtx") {
-      names.insert(at->path().stem().string());
+    const std::string name = matrix_name(at->path());
+    if (!name.empty()) {
+      names.insert(name);
     }
   }
   if (code) {
@@ -143,23 +157,29 @@ std::vector<fs::path> find_matrix_files(const fs::path& folder) {
     const bool belongs = (ends_with(name, "_b") || ends_with(name, "_x")) &&
                          names.contains(name.substr(0, name.size() - 2));
     if (!belongs) {
-      files.push_back(folder / (name + ".mtx"));
+      const fs::path plain = folder / (name + ".mtx");
+      files.push_back(fs::exists(plain) ? plain : folder / (name + ".mtx.gz"));
     }
   }
   if (files.empty()) {
-    throw InvalidInput(concat(folder.string(), ": there is no Matrix Market file (NAME.mtx)"));
+    throw InvalidInput(concat(folder.string(),
+                              ": there is no Matrix Market file (NAME.mtx or "
+                              "NAME.mtx.gz)"));
   }
   return files;
 }
 
-BenchmarkMatrix read_benchmark_matrix(const fs::path& file) {
+BenchmarkMatrix read_benchmark_matrix(const fs::path& file, const std::string& structure) {
   BenchmarkMatrix out;
-  out.label.name = file.stem().string();
+  out.label.name = matrix_name(file);
   out.label.source = file.parent_path().filename().string();
   out.A = read_matrix(file);
-  if (fs::exists(beside(file, ".json"))) {
-    read_sidecar(beside(file, ".json"), out);
-  } else {
+  out.name_of_unknown = [](int i) { return concat(i + 1, " in the file"); };
+  const fs::path sidecar = file.parent_path() / (out.label.name + ".json");
+  const bool declared = fs::exists(sidecar) && read_sidecar(sidecar, out);
+  if (!structure.empty()) {
+    out.options.structure = find_structure(structure);
+  } else if (!declared) {
     out.options.structure = structure_of(out.A);
   }
   const fs::path b = beside(file, "_b.mtx");

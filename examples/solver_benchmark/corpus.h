@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -29,18 +30,23 @@ enum class CorpusSize { kSmall, kMedium, kLarge };
 /// @throws IoError; NumericalFailure if the matrix is singular
 void write_corpus_matrix(const BenchmarkMatrix& matrix, const std::filesystem::path& folder);
 
-/// The matrices of a folder: its files NAME.mtx, by name, but for the NAME_b.mtx and NAME_x.mtx
-/// that belong to another.
+/// The matrices of a folder: its files NAME.mtx or NAME.mtx.gz, by name, but for the NAME_b and
+/// NAME_x that belong to another.
 ///
 /// @throws IoError if the folder cannot be read; InvalidInput if there is no such file
 [[nodiscard]] std::vector<std::filesystem::path> find_matrix_files(
     const std::filesystem::path& folder);
 
-/// Reads a matrix and what belongs to it, as far as it is there. Without NAME.json a symmetric
-/// matrix that has Cholesky factors is taken as definite, and any other as general; without
-/// NAME_b.mtx b is A·1.
+/// NAME of NAME.mtx or NAME.mtx.gz; empty for another file.
+[[nodiscard]] std::string matrix_name(const std::filesystem::path& file);
+
+/// Reads a matrix and what belongs to it, as far as it is there. Messages of its solvers count its
+/// rows from 1, as its file does. Without NAME_b.mtx b is A·1.
 ///
+/// @param structure  a name of structure_names(); empty: that of NAME.json or, if there is none,
+///                   definite for a symmetric matrix with Cholesky factors and else general
 /// @throws IoError, InvalidInput naming the file, what was found and what is allowed
-[[nodiscard]] BenchmarkMatrix read_benchmark_matrix(const std::filesystem::path& file);
+[[nodiscard]] BenchmarkMatrix read_benchmark_matrix(const std::filesystem::path& file,
+                                                    const std::string& structure = "");
 
 }  // namespace hbar::solver_benchmark

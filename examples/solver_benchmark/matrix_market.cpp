@@ -1,19 +1,14 @@
 #include "matrix_market.h"
 
-#include <cholmod.h>
-#include <stdio.h>
-#include <stdlib.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cmath>
+#include <array>
 #include <cstdint>
-#include <memory>
+#include <limits>
 #include <sstream>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
+#include "gzip_file.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/numbers.h"
 #include "hbar/core/files/result_file.h"
@@ -28,281 +23,273 @@ constexpr const char* kMatrixKinds =
 constexpr const char* kVectorKinds =
     "allowed: one column after \"%%MatrixMarket matrix array\", of kind real or integer, general";
 
-/// CHOLMOD's settings and workspace.
-class Common {
- public:
-  Common() {
-    cholmod_start(&common_);
-    common_.print = 0;
-  }
-  Common(const Common&) = delete;
-  Common& operator=(const Common&) = delete;
-  ~Common() { cholmod_finish(&common_); }
+using Words = std::vector<std::string_view>;
 
-  [[nodiscard]] cholmod_common* get() { return &common_; }
-  [[nodiscard]] bool out_of_memory() const { return common_.status == CHOLMOD_OUT_OF_MEMORY; }
+/// The lines of a file after its head line, without comments and empty ones.
+class Lines {
+ public:
+  Lines(const std::filesystem::path& file, const char* allowed)
+      : name_(file.string()),
+        allowed_(allowed),
+        text_(file.extension() == ".gz" ? read_gzip_file(file) : scene::read_text_file(file)),
+        left_(text_) {
+    if (left_.starts_with("\xef\xbb\xbf")) {  // byte order mark
+      left_.remove_prefix(3);
+    }
+    read_head();
+  }
+
+  /// The words of the head line in small letters: %%matrixmarket matrix, then what kind it is.
+  [[nodiscard]] const std::vector<std::string>& head() const { return head_; }
+
+  /// Refuses a word of the head line that is none of these.
+  void require_head(std::size_t word, const Words& words) const {
+    if (std::find(words.begin(), words.end(), head_[word]) == words.end()) {
+      throw InvalidInput(
+          concat(name_, ": the matrix is ", scene::quotable(head_[word]), "; ", allowed_));
+    }
+  }
+
+  /// Moves to the next line; false at the end.
+  bool next() {
+    while (!left_.empty()) {
+      take();
+      words_ = scene::split_words(line_);
+      if (!line_.starts_with('%') && !words_.empty()) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Words of the line.
+  [[nodiscard]] const Words& words() const { return words_; }
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw InvalidInput(concat(name_, ":", std::max(1, number_), ": ", what, "; ", allowed_));
+  }
+
+  /// A whole number of the line, from `least` to `most`.
+  [[nodiscard]] int integer(std::size_t word, const char* what, int least, int most) const {
+    std::string reason;
+    const auto value = scene::parse_integer(words_[word], reason);
+    if (!value || *value < least || *value > most) {
+      refuse(concat(what, " is ", scene::quotable(words_[word]), "; it must be from ", least,
+                    " to ", most));
+    }
+    return *value;
+  }
+
+  [[nodiscard]] double number(std::size_t word) const {
+    std::string reason;
+    const auto value = scene::parse_number(words_[word], reason);
+    if (!value) {
+      refuse(reason);
+    }
+    return *value;
+  }
+
+  /// Reads the line of sizes, which are counts.
+  template <std::size_t kCount>
+  std::array<int, kCount> sizes() {
+    std::array<int, kCount> out;
+    if (!next()) {
+      refuse("there is no line of sizes");
+    }
+    if (words_.size() != kCount) {
+      refuse(concat("\"", scene::quotable(line_), "\" stands where ", kCount, " sizes belong"));
+    }
+    for (std::size_t i = 0; i < kCount; ++i) {
+      out[i] = integer(i, "a size", 0, std::numeric_limits<int>::max());
+    }
+    return out;
+  }
+
+  /// Calls `entry()` at each of the lines that follow.
+  ///
+  /// @param count  how many there must be
+  /// @param width  words of each
+  template <typename Entry>
+  void entries(std::int64_t count, std::size_t width, const Entry& entry) {
+    std::int64_t found = 0;
+    while (next()) {
+      if (++found > count) {
+        refuse(concat("the sizes promise ", count, " entries; this is one more"));
+      }
+      if (words_.size() != width) {
+        refuse(concat("\"", scene::quotable(line_), "\" has ", words_.size(),
+                      " words; an entry has ", width));
+      }
+      entry();
+    }
+    if (found < count) {
+      refuse(concat("the file ends after ", found, " entries; its sizes promise ", count));
+    }
+  }
 
  private:
-  cholmod_common common_ = {};
+  void take() {
+    line_ = left_.substr(0, left_.find('\n'));
+    left_.remove_prefix(std::min(line_.size() + 1, left_.size()));
+    ++number_;
+  }
+
+  void read_head() {
+    take();
+    for (const std::string_view word : scene::split_words(line_)) {
+      head_.emplace_back(word);
+      for (char& c : head_.back()) {
+        c = 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c;
+      }
+    }
+    if (head_.size() != 5 || head_[0] != "%%matrixmarket" || head_[1] != "matrix") {
+      refuse(concat("the first line is \"", scene::quotable(line_), "\""));
+    }
+  }
+
+  std::string name_;
+  const char* allowed_;
+  std::string text_;
+  std::string_view left_;
+  std::string_view line_;
+  int number_ = 0;
+  std::vector<std::string> head_;
+  Words words_;
 };
 
-struct FreeSparse {
-  cholmod_common* common;
-  void operator()(cholmod_sparse* A) const { cholmod_free_sparse(&A, common); }
+/// Of a file that holds one triangle, which may be either.
+class Triangle {
+ public:
+  void add(const Lines& lines, int row, int column) {
+    if (row == column) {
+      return;
+    }
+    const int side = row > column ? 1 : -1;
+    if (side_ == -side) {
+      lines.refuse(concat("entry (", row, ", ", column, ") is ", side > 0 ? "below" : "above",
+                          " the diagonal, earlier ones are on its other side; of such a matrix a "
+                          "file has one triangle"));
+    }
+    side_ = side;
+  }
+
+ private:
+  int side_ = 0;
 };
-struct FreeDense {
-  cholmod_common* common;
-  void operator()(cholmod_dense* X) const { cholmod_free_dense(&X, common); }
-};
-struct CloseFile {
-  void operator()(FILE* file) const { ::fclose(file); }
-};
-using SparsePointer = std::unique_ptr<cholmod_sparse, FreeSparse>;
-using DensePointer = std::unique_ptr<cholmod_dense, FreeDense>;
-using FilePointer = std::unique_ptr<FILE, CloseFile>;
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found,
-                         const char* allowed) {
-  throw InvalidInput(concat(file.string(), ": ", found, "; ", allowed));
-}
-
-/// The words of the first line in small letters, which say what kind of matrix follows.
-std::vector<std::string> banner(const std::filesystem::path& file, const std::string& text,
-                                const char* allowed) {
-  std::string line = text.substr(0, text.find('\n'));
-  std::transform(line.begin(), line.end(), line.begin(),
-                 [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  std::istringstream stream(line);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) {
-    words.push_back(word);
-  }
-  if (words.size() != 5 || words[0] != "%%matrixmarket" || words[1] != "matrix") {
-    refuse(file, concat("the first line is \"", scene::quotable(line), "\""), allowed);
-  }
-  return words;
-}
-
-void require(const std::filesystem::path& file, const std::string& word,
-             const std::vector<std::string>& words, const char* allowed) {
-  if (std::find(words.begin(), words.end(), word) == words.end()) {
-    refuse(file, concat("the matrix is ", scene::quotable(word)), allowed);
-  }
-}
-
-/// Refuses what CHOLMOD does not notice: sizes that are no whole numbers (it returns a wild pointer
-/// for negative ones), fewer entries than promised (it keeps their memory), and lines that it would
-/// read in part.
-///
-/// @param count  of sizes: 3 for a matrix (the last is that of its entries), 2 for a dense one
-void check_lines(const std::filesystem::path& file, std::string_view text, std::size_t count,
-                 const char* allowed) {
-  constexpr std::size_t kLongestLine = 1000;
-  std::vector<int> sizes;
-  std::int64_t entries = 0;
-  for (int number = 1; !text.empty(); ++number) {
-    const std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(line.size() + 1, text.size()));
-    if (line.size() > kLongestLine) {
-      refuse(file, concat("line ", number, " has more than ", kLongestLine, " characters"),
-             allowed);
+bool is_symmetric(const solvers::SparseMatrix& A) {
+  const solvers::SparseMatrix transposed = A.transpose();
+  for (Eigen::Index j = 0; j < A.cols(); ++j) {
+    solvers::SparseMatrix::InnerIterator a(A, j);
+    solvers::SparseMatrix::InnerIterator b(transposed, j);
+    for (; a && b; ++a, ++b) {
+      if (a.row() != b.row() || a.value() != b.value()) {
+        return false;
+      }
     }
-    if (line.find('\0') != std::string_view::npos) {
-      refuse(file, concat("line ", number, " has a zero byte"), allowed);
-    }
-    if (line.starts_with('%') || line.find_first_not_of(" \t\r\v\f") == std::string_view::npos) {
-      continue;
-    }
-    if (!sizes.empty()) {
-      ++entries;
-      continue;
-    }
-    for (const std::string_view word : scene::split_words(line)) {
-      std::string reason;
-      sizes.push_back(scene::parse_integer(word, reason).value_or(-1));
-    }
-    if (sizes.size() != count || *std::min_element(sizes.begin(), sizes.end()) < 0) {
-      refuse(file,
-             concat("line ", number, " is \"", scene::quotable(line), "\" where ", count,
-                    " sizes belong"),
-             allowed);
+    if (a || b) {
+      return false;
     }
   }
-  if (sizes.empty()) {
-    refuse(file, "there is no line of sizes", allowed);
-  }
-  const std::int64_t promised = count == 3 ? sizes[2] : std::int64_t{sizes[0]} * sizes[1];
-  if (entries < promised) {
-    refuse(file, concat("there are ", entries, " lines of entries; its sizes promise ", promised),
-           allowed);
-  }
+  return true;
 }
 
-/// A text as CHOLMOD reads it: a FILE over its bytes.
-FilePointer reader(std::string& text) {
-  FilePointer stream(::fmemopen(text.data(), text.size(), "r"));
-  if (stream == nullptr) {
-    throw std::bad_alloc();
-  }
-  return stream;
-}
-
-/// What `write` writes into a FILE.
-template <typename Write>
-std::string written(const Write& write) {
-  char* data = nullptr;
-  std::size_t size = 0;
-  FilePointer stream(::open_memstream(&data, &size));
-  const bool done = stream != nullptr && write(stream.get()) >= 0;
-  stream.reset();
-  const std::unique_ptr<char, void (*)(void*)> owner(data, ::free);
-  if (!done || data == nullptr) {
-    throw std::bad_alloc();  // a stream in memory fails for nothing else
-  }
-  return {data, size};
-}
-
-void check_finite(const std::filesystem::path& file, const double* values, std::size_t count,
-                  const char* allowed) {
-  // CHOLMOD writes and reads infinities as numbers beyond 1e308.
-  const auto huge = [](double value) { return !(std::abs(value) < 1e308); };
-  if (std::any_of(values, values + count, huge)) {
-    refuse(file, "an entry is not a finite number", allowed);
-  }
-}
-
-/// CHOLMOD writes a matrix of ones as a pattern, and gives that other entries when it reads it if
-/// it is symmetric: the same with its ones.
-std::string with_ones(const std::string& text) {
-  const std::string pattern = " pattern ";
-  const std::size_t at = text.find(pattern);
-  if (at >= text.find('\n')) {
-    return text;
-  }
-  std::istringstream stream(text);
-  std::string out;
-  int line_number = 0;
+/// The head line, and the comment.
+std::string head(const char* kind, const std::string& comment) {
+  std::string out = concat("%%MatrixMarket matrix ", kind, '\n');
+  std::istringstream stream(comment);
   for (std::string line; std::getline(stream, line);) {
-    ++line_number;  // the head line and that of sizes come before the entries
-    out += line_number == 1 ? line.replace(at, pattern.size(), " integer ") : line;
-    out += line_number > 2 ? " 1\n" : "\n";
+    out += "% " + line + '\n';
   }
   return out;
 }
 
-/// With CHOLMOD's head line, the comment follows.
-std::string with_comment(std::string text, const std::string& comment) {
-  std::string lines;
-  std::istringstream stream(comment);
-  for (std::string line; std::getline(stream, line);) {
-    lines += "% " + line + '\n';
-  }
-  return text.insert(text.find('\n') + 1, lines);
-}
-
 }  // namespace
 
-bool has_matrix_market() { return true; }
-
 solvers::SparseMatrix read_matrix(const std::filesystem::path& file) {
-  std::string text = scene::read_text_file(file);
-  const std::vector<std::string> words = banner(file, text, kMatrixKinds);
-  require(file, words[2], {"coordinate"}, kMatrixKinds);
-  require(file, words[3], {"real", "integer", "pattern"}, kMatrixKinds);
-  require(file, words[4], {"general", "symmetric", "skew-symmetric"}, kMatrixKinds);
-  check_lines(file, text, 3, kMatrixKinds);
-  Common common;
-  SparsePointer A(cholmod_read_sparse(reader(text).get(), common.get()), {common.get()});
-  if (A != nullptr && A->stype != 0) {
-    A.reset(cholmod_copy(A.get(), 0, 1, common.get()));
+  Lines lines(file, kMatrixKinds);
+  lines.require_head(2, {"coordinate"});
+  lines.require_head(3, {"real", "integer", "pattern"});
+  lines.require_head(4, {"general", "symmetric", "skew-symmetric"});
+  const bool is_pattern = lines.head()[3] == "pattern";
+  const bool is_general = lines.head()[4] == "general";
+  const double mirrored = lines.head()[4] == "symmetric" ? 1.0 : -1.0;
+  const auto [rows, columns, count] = lines.sizes<3>();
+  if (rows != columns || rows == 0) {
+    lines.refuse(concat("the matrix has ", rows, " rows and ", columns, " columns"));
   }
-  if (common.out_of_memory()) {
-    throw std::bad_alloc();
-  }
-  if (A == nullptr || A->xtype != CHOLMOD_REAL) {
-    refuse(file, "sizes, indices or numbers are not as they should be", kMatrixKinds);
-  }
-  if (A->nrow != A->ncol || A->nrow == 0) {
-    refuse(file, concat("the matrix has ", A->nrow, " rows and ", A->ncol, " columns"),
-           kMatrixKinds);
-  }
-  cholmod_sort(A.get(), common.get());
-  const auto* outer = static_cast<const int*>(A->p);
-  const auto* values = static_cast<const double*>(A->x);
-  const auto count = static_cast<std::size_t>(outer[A->ncol]);
   if (count == 0) {
-    refuse(file, "the matrix has no entry", kMatrixKinds);
+    lines.refuse("the matrix has no entry");
   }
-  check_finite(file, values, count, kMatrixKinds);
-  const auto n = static_cast<Eigen::Index>(A->nrow);
-  return Eigen::Map<const solvers::SparseMatrix>(n, n, static_cast<Eigen::Index>(count), outer,
-                                                 static_cast<const int*>(A->i), values);
+  std::vector<Eigen::Triplet<double>> entries;
+  Triangle triangle;
+  lines.entries(count, is_pattern ? 2 : 3, [&, n = rows] {
+    const int row = lines.integer(0, "a row", 1, n);
+    const int column = lines.integer(1, "a column", 1, n);
+    const double value = is_pattern ? 1.0 : lines.number(2);
+    entries.emplace_back(row - 1, column - 1, value);
+    if (is_general) {
+      return;
+    }
+    triangle.add(lines, row, column);
+    if (row != column) {
+      entries.emplace_back(column - 1, row - 1, mirrored * value);
+    } else if (mirrored < 0.0 && value != 0.0) {
+      lines.refuse(concat("entry (", row, ", ", row, ") of a skew-symmetric matrix is ", value));
+    }
+  });
+  solvers::SparseMatrix A(rows, rows);
+  A.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::Map<const Eigen::VectorXd> values(A.valuePtr(), A.nonZeros());
+  if (!values.allFinite()) {
+    lines.refuse("the entries of one place add up to more than a double holds");
+  }
+  return A;
 }
 
 Eigen::VectorXd read_vector(const std::filesystem::path& file, Eigen::Index rows) {
-  std::string text = scene::read_text_file(file);
-  const std::vector<std::string> words = banner(file, text, kVectorKinds);
-  require(file, words[2], {"array"}, kVectorKinds);
-  require(file, words[3], {"real", "integer"}, kVectorKinds);
-  require(file, words[4], {"general"}, kVectorKinds);
-  check_lines(file, text, 2, kVectorKinds);
-  Common common;
-  const DensePointer x(cholmod_read_dense(reader(text).get(), common.get()), {common.get()});
-  if (common.out_of_memory()) {
-    throw std::bad_alloc();
+  Lines lines(file, kVectorKinds);
+  lines.require_head(2, {"array"});
+  lines.require_head(3, {"real", "integer"});
+  lines.require_head(4, {"general"});
+  const auto [found, columns] = lines.sizes<2>();
+  if (found != rows || columns != 1) {
+    lines.refuse(concat("there are ", found, " rows and ", columns, " columns where ", rows,
+                        " rows and 1 column belong"));
   }
-  if (x == nullptr || x->xtype != CHOLMOD_REAL) {
-    refuse(file, "sizes or numbers are not as they should be", kVectorKinds);
-  }
-  if (static_cast<Eigen::Index>(x->nrow) != rows || x->ncol != 1) {
-    refuse(file,
-           concat("there are ", x->nrow, " rows and ", x->ncol, " columns where ", rows,
-                  " rows and 1 column belong"),
-           kVectorKinds);
-  }
-  const auto* values = static_cast<const double*>(x->x);
-  check_finite(file, values, x->nzmax, kVectorKinds);
-  return Eigen::Map<const Eigen::VectorXd>(values, rows);
+  Eigen::VectorXd out(rows);
+  Eigen::Index row = 0;
+  lines.entries(rows, 1, [&] { out[row++] = lines.number(0); });
+  return out;
 }
 
 void write_matrix(const std::filesystem::path& file, const solvers::SparseMatrix& A,
                   const std::string& comment) {
-  solvers::SparseMatrix copy = A;
-  copy.makeCompressed();
-  Common common;
-  cholmod_sparse view = {};
-  view.nrow = static_cast<std::size_t>(copy.rows());
-  view.ncol = static_cast<std::size_t>(copy.cols());
-  view.nzmax = static_cast<std::size_t>(copy.nonZeros());
-  view.p = copy.outerIndexPtr();
-  view.i = copy.innerIndexPtr();
-  view.x = copy.valuePtr();
-  view.itype = CHOLMOD_INT;
-  view.xtype = CHOLMOD_REAL;
-  view.dtype = CHOLMOD_DOUBLE;
-  view.sorted = 1;
-  view.packed = 1;
-  const std::string text = written([&](FILE* stream) {
-    return cholmod_write_sparse(stream, &view, nullptr, nullptr, common.get());
-  });
-  scene::write_result_file(file, with_comment(with_ones(text), comment));
+  const bool symmetric = is_symmetric(A);
+  std::string entries;
+  std::int64_t count = 0;
+  for (Eigen::Index j = 0; j < A.cols(); ++j) {
+    for (solvers::SparseMatrix::InnerIterator entry(A, j); entry; ++entry) {
+      if (symmetric && entry.row() < j) {
+        continue;
+      }
+      entries +=
+          concat(entry.row() + 1, ' ', j + 1, ' ', scene::format_number(entry.value()), '\n');
+      ++count;
+    }
+  }
+  const char* kind = symmetric ? "coordinate real symmetric" : "coordinate real general";
+  scene::write_result_file(
+      file, head(kind, comment) + concat(A.rows(), ' ', A.cols(), ' ', count, '\n') + entries);
 }
 
 void write_vector(const std::filesystem::path& file, const Eigen::VectorXd& x,
                   const std::string& comment) {
-  Eigen::VectorXd copy = x;
-  Common common;
-  cholmod_dense view = {};
-  view.nrow = static_cast<std::size_t>(copy.size());
-  view.ncol = 1;
-  view.nzmax = view.nrow;
-  view.d = view.nrow;
-  view.x = copy.data();
-  view.xtype = CHOLMOD_REAL;
-  view.dtype = CHOLMOD_DOUBLE;
-  const std::string text = written(
-      [&](FILE* stream) { return cholmod_write_dense(stream, &view, nullptr, common.get()); });
-  scene::write_result_file(file, with_comment(text, comment));
+  std::string text = head("array real general", comment) + concat(x.size(), " 1\n");
+  for (const double value : x) {
+    text += scene::format_number(value) + '\n';
+  }
+  scene::write_result_file(file, text);
 }
 
 }  // namespace hbar::solver_benchmark

@@ -67,7 +67,7 @@ class Run {
       one(name_of(which), [&] { return assembler.assemble(which); });
     }
     for (const std::filesystem::path& file : plan_.files) {
-      one(file.stem().string(), [&] { return read_benchmark_matrix(file); });
+      one(matrix_name(file), [&] { return read_benchmark_matrix(file, plan_.structure); });
     }
     return std::move(results_);
   }

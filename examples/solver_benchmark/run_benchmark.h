@@ -10,6 +10,7 @@ namespace hbar::solver_benchmark {
 struct BenchmarkPlan {
   std::vector<Case> cases;
   std::vector<std::filesystem::path> files;  ///< Matrix Market, after the cases
+  std::string structure;  ///< of all of `files`; empty: as read_benchmark_matrix finds it
   /// Names of available_solvers() and "auto"; empty: "auto" and, for each matrix, all that claim
   /// it.
   std::vector<std::string> solvers;

@@ -1,10 +1,13 @@
 #include "sidecar.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "hbar/core/base/error.h"
+#include "hbar/core/base/nearest_name.h"
 #include "hbar/core/files/numbers.h"
 #include "hbar/core/files/text_file.h"
 
@@ -17,6 +20,12 @@ using solvers::Structure;
 constexpr std::array kStructures = {Structure::kGeneral, Structure::kBlockTriangular,
                                     Structure::kPeriodic, Structure::kDefinite,
                                     Structure::kQuasiDefinite};
+
+// Those that are read, then those that only tell.
+const std::vector<std::string> kKeys = {
+    "source",    "family", "system", "integrator", "n",
+    "T",         "h",      "rows",   "blocks",     "condition",
+    "structure", "hbar",   "name",   "entries",    "solution_backward_error"};
 
 /// Block sizes as runs of (how many, of what size): most are equal.
 Json runs(const std::vector<int>& sizes) {
@@ -62,38 +71,61 @@ std::vector<int> sizes(const Json& runs_of_blocks, Eigen::Index rows) {
   return out;
 }
 
+/// Sets all that is there; returns whether the structure is.
+bool set(const Json& json, BenchmarkMatrix& matrix) {
+  if (!json.is_object()) {
+    throw InvalidInput("this is no JSON object");
+  }
+  for (const auto& [key, value] : json.items()) {
+    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
+      throw InvalidInput(concat("there is no key \"", scene::quotable(key), "\"; ",
+                                unknown_name_hint(key, kKeys)));
+    }
+  }
+  MatrixLabel& label = matrix.label;
+  label.source = json.value("source", label.source);
+  label.family = json.value("family", label.family);
+  label.system = json.value("system", label.system);
+  label.integrator = json.value("integrator", label.integrator);
+  label.dof = json.contains("n") ? whole_number(json["n"], "n") : label.dof;
+  label.steps = json.contains("T") ? whole_number(json["T"], "T") : label.steps;
+  label.h = json.value("h", label.h);
+  if (json.contains("rows") && json["rows"] != matrix.A.rows()) {
+    throw InvalidInput(concat("rows is ", scene::quotable(json["rows"].dump()), "; the matrix has ",
+                              matrix.A.rows(), " rows"));
+  }
+  if (json.contains("blocks")) {
+    matrix.options.block_sizes = sizes(json["blocks"], matrix.A.rows());
+  }
+  if (json.contains("condition") && json["condition"].is_number()) {
+    matrix.condition = json["condition"].get<double>();
+  }
+  if (!json.contains("structure")) {
+    return false;
+  }
+  matrix.options.structure = find_structure(json["structure"].get<std::string>());
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::string> structure_names() {
+  std::vector<std::string> out;
+  for (const Structure structure : kStructures) {
+    out.emplace_back(name_of(structure));
+  }
+  return out;
+}
+
 Structure find_structure(const std::string& name) {
-  std::string known;
   for (const Structure structure : kStructures) {
     if (name_of(structure) == name) {
       return structure;
     }
-    known += concat(' ', name_of(structure));
   }
-  throw InvalidInput(concat("there is no structure \"", name, "\"; known:", known));
+  throw InvalidInput(concat("there is no structure \"", scene::quotable(name), "\"; ",
+                            unknown_name_hint(name, structure_names())));
 }
-
-void set(const Json& json, BenchmarkMatrix& matrix) {
-  MatrixLabel& label = matrix.label;
-  label.source = json.at("source");
-  label.family = json.at("family");
-  label.system = json.at("system");
-  label.integrator = json.at("integrator");
-  label.dof = whole_number(json.at("n"), "n");
-  label.steps = whole_number(json.at("T"), "T");
-  label.h = json.at("h");
-  matrix.options.structure = find_structure(json.at("structure"));
-  if (json.at("rows") != matrix.A.rows()) {
-    throw InvalidInput(concat("rows is ", scene::quotable(json.at("rows").dump()),
-                              "; the matrix has ", matrix.A.rows(), " rows"));
-  }
-  matrix.options.block_sizes = sizes(json.at("blocks"), matrix.A.rows());
-  if (json.at("condition").is_number()) {
-    matrix.condition = json.at("condition").get<double>();
-  }
-}
-
-}  // namespace
 
 std::string sidecar_json(const BenchmarkMatrix& matrix, double backward_error) {
   const MatrixLabel& label = matrix.label;
@@ -115,9 +147,9 @@ std::string sidecar_json(const BenchmarkMatrix& matrix, double backward_error) {
   return out.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-void read_sidecar(const std::filesystem::path& file, BenchmarkMatrix& matrix) {
+bool read_sidecar(const std::filesystem::path& file, BenchmarkMatrix& matrix) {
   try {
-    set(Json::parse(scene::read_text_file(file)), matrix);
+    return set(Json::parse(scene::read_text_file(file)), matrix);
   } catch (const Json::exception& error) {
     throw InvalidInput(concat(file.string(), ": not what `hbar corpus` writes: ", error.what()));
   } catch (const InvalidInput& error) {

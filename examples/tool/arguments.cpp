@@ -57,7 +57,7 @@ struct OptionRow {
   const char* sentence;
 };
 
-constexpr std::array<OptionRow, 28> kOptions = {{
+constexpr std::array<OptionRow, 29> kOptions = {{
     {"--steps", "N", kInRuns, "Number of time steps (100)."},
     {"--dt", "H", kInRuns, "Time step in seconds (the scene's)."},
     {"--integrator", "NAME", kInRuns, "bdf1, bdf2 or sdirk2 (the scene's)."},
@@ -91,6 +91,9 @@ constexpr std::array<OptionRow, 28> kOptions = {{
     {"--rhs", "N", kInSolvers, "Right-hand sides that are solved at once (16)."},
     {"--repeat", "N", kInSolvers, "The fastest of so many runs counts (3)."},
     {"--matrices", "DIR", kInSolvers, "Measures on the Matrix Market files in a folder, too."},
+    {"--structure", "NAME", kInSolvers,
+     "What these matrices are: general, block_triangular, periodic, definite or quasi_definite "
+     "(what the JSON file beside each says, else definite or general)."},
     {"--json", "FILE", kInSolvers, "Writes the results as JSON; - is standard output."},
     {"--csv", "FILE", kInSolvers, "Writes a row per measurement as CSV; - is standard output."},
     {"--plots", "DIR", kInSolvers, "Draws figures (SVG) with gnuplot, in a folder."},

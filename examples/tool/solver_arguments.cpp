@@ -63,6 +63,10 @@ SolverArguments read_solver_arguments(const std::vector<std::string>& scenes, co
   check_name("--clock", out.clock, {"wall", "cpu"});
   out.rhs = count(given, "--rhs", kMostRhs).value_or(out.rhs);
   out.repeat = count(given, "--repeat", kMostRepeats).value_or(out.repeat);
+  out.structure = value_of(given, "--structure").value_or("");
+  if (!out.structure.empty() && !out.matrices) {
+    usage("--structure says what the matrices of --matrices are; name their folder");
+  }
   out.json = file(given, "--json");
   out.csv = file(given, "--csv");
   out.plots = file(given, "--plots");

@@ -23,6 +23,7 @@ struct SolverArguments {
   int rhs = 16;
   int repeat = 3;
   std::optional<std::string> matrices;  ///< folder of Matrix Market files
+  std::string structure;                ///< of all of them; empty: of each its own
   std::optional<std::string> json;      ///< file; "-" is standard output
   std::optional<std::string> csv;       ///< file; "-" is standard output
   std::optional<std::string> plots;     ///< folder

@@ -10,9 +10,9 @@
 #include "examples/solver_benchmark/corpus.h"
 #include "examples/solver_benchmark/families.h"
 #include "examples/solver_benchmark/gnuplot.h"
-#include "examples/solver_benchmark/matrix_market.h"
 #include "examples/solver_benchmark/plots.h"
 #include "examples/solver_benchmark/run_benchmark.h"
+#include "examples/solver_benchmark/sidecar.h"
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/text_file.h"
 #include "hbar/suite.h"
@@ -111,6 +111,9 @@ BenchmarkPlan plan_of(const SolverArguments& arguments) {
   for (const std::string& solver : plan.solvers) {
     check_name("--solver", solver, solver_names());
   }
+  if (!arguments.structure.empty()) {
+    check_name("--structure", arguments.structure, benchmark::structure_names());
+  }
   plan.orderings = orderings(arguments.orderings);
   try {
     benchmark::check_plan(plan);
@@ -122,10 +125,8 @@ BenchmarkPlan plan_of(const SolverArguments& arguments) {
   plan.options.repeat = arguments.repeat;
   plan.stop = &stop_flag();
   if (arguments.matrices) {
-    if (!benchmark::has_matrix_market()) {
-      usage("--matrices: this build has no CHOLMOD, which reads Matrix Market files");
-    }
     plan.files = benchmark::find_matrix_files(*arguments.matrices);
+    plan.structure = arguments.structure;
   }
   return plan;
 }
@@ -243,9 +244,6 @@ ExitCode run_solvers(const SolverArguments& arguments) {
 }
 
 ExitCode run_corpus(const CorpusArguments& arguments) {
-  if (!benchmark::has_matrix_market()) {
-    usage("corpus: this build has no CHOLMOD, which writes Matrix Market files");
-  }
   std::vector<Case> cases;
   for (const CorpusSize size : {CorpusSize::kSmall, CorpusSize::kMedium, CorpusSize::kLarge}) {
     if (std::find(arguments.sizes.begin(), arguments.sizes.end(), name_of(size)) !=

@@ -16,7 +16,7 @@ namespace hbar::tool {
 
 /// Writes a corpus of matrices.
 ///
-/// @throws ProgramError  kUsage without CHOLMOD, kInterrupted
+/// @throws ProgramError  kInterrupted
 /// @throws IoError for files that cannot be written
 [[nodiscard]] example::ExitCode run_corpus(const CorpusArguments& arguments);
 

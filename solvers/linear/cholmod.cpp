@@ -275,8 +275,7 @@ class Cholmod final : public LinearSolver {
   }
 
   void read_info() {
-    const cholmod_factor& factor = *handle_.factor;
-    info_.entries = static_cast<double>(factor.is_super != 0 ? factor.xsize : factor.nzmax);
+    info_.entries = 2.0 * handle_.common.lnz - size();
     info_.bytes = static_cast<double>(handle_.common.memory_usage);
     info_.flops = flops_ + (kind_ == Kind::kNormal ? handle_.common.aatfl : 0.0);
     if (kind_ == Kind::kNormal) {

@@ -64,10 +64,10 @@ class EigenSparseLu final : public LinearSolver {
     if (!factorized_) {
       return {};
     }
-    const double entries = static_cast<double>(lu_.nnzL() + lu_.nnzU());
+    const double stored = static_cast<double>(lu_.nnzL() + lu_.nnzU());
     const double copies = 2.0 * static_cast<double>(scaled_.nonZeros());
-    return {.entries = entries,
-            .bytes = (entries + copies) * static_cast<double>(sizeof(double) + sizeof(Index)),
+    return {.entries = stored - size(),
+            .bytes = (stored + copies) * static_cast<double>(sizeof(double) + sizeof(Index)),
             .flops = {},
             .inertia = {}};
   }

@@ -73,10 +73,11 @@ class Klu final : public LinearSolver {
     }
     typename Calls::Common common = common_;  // which KLU writes its count to
     Calls::kFlops(symbolic_, numeric_, &common);
-    return {.entries = static_cast<double>(numeric_->lnz + numeric_->unz + numeric_->nzoff),
-            .bytes = static_cast<double>(common_.memusage),
-            .flops = common.flops,
-            .inertia = {}};
+    return {
+        .entries = static_cast<double>(numeric_->lnz + numeric_->unz + numeric_->nzoff - size()),
+        .bytes = static_cast<double>(common_.memusage),
+        .flops = common.flops,
+        .inertia = {}};
   }
 
  private:

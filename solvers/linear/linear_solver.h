@@ -46,7 +46,10 @@ struct Inertia {
 
 /// Figures of the last factorisation.
 struct FactorInfo {
-  double entries = 0.0;         ///< numbers that the factors hold, stored zeros included
+  /// Entries of both factors, their diagonal counted once: those of L + U, of L + Lᵀ where one
+  /// triangle is kept, of R and the reflections of a QR factorisation. Dense blocks and bands count
+  /// whole.
+  double entries = 0.0;
   double bytes = 0.0;           ///< of factors, analysis and workspace, approximate
   std::optional<double> flops;  ///< operations of the factorisation, where the solver counts them
   std::optional<Inertia> inertia;  ///< if the factorisation reveals it

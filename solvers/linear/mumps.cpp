@@ -44,6 +44,26 @@ int code_of(Ordering ordering) {
   return ordering == kMetis ? 5 : 7;
 }
 
+/// What MUMPS' codes mean that a call of ours can meet (its manual, under INFOG(1)).
+const char* words_of(int code) {
+  switch (code) {
+    case -6:
+      return "the matrix is structurally singular: no order of its rows gives a diagonal without "
+             "zeros";
+    case -37:
+    case -38:
+    case -39:
+      return "the ordering failed";
+    case -51:
+    case -52:
+      return "the matrix is too large for the indices of the ordering";
+    case -90:
+      return "writing factors to a file failed";
+    default:
+      return "it gave up";
+  }
+}
+
 class Mumps final : public LinearSolver {
  public:
   explicit Mumps(const SolverOptions& options)
@@ -199,10 +219,11 @@ class Mumps final : public LinearSolver {
 
   void measure() {
     // A negative number counts millions.
-    const double entries = id_.infog[28];
-    info_.entries = entries >= 0.0 ? entries : -1e6 * entries;
+    const double counted = id_.infog[28];
+    const double stored = counted >= 0.0 ? counted : -1e6 * counted;
+    info_.entries = is_symmetric_ ? 2.0 * stored - size() : stored;
     // Whole megabytes.
-    info_.bytes = std::max(1e6 * static_cast<double>(id_.infog[21]), 8.0 * info_.entries);
+    info_.bytes = std::max(1e6 * static_cast<double>(id_.infog[21]), 8.0 * stored);
     info_.flops = id_.rinfog[2];
     if (is_symmetric_) {
       const int negative = id_.infog[11];
@@ -238,8 +259,9 @@ class Mumps final : public LinearSolver {
     if (no_memory || wants_workspace()) {
       throw_out_of_memory(where);
     }
-    throw NumericalFailure(concat("mumps: ", where, ": status ", id_.infog[0], ", ", id_.infog[1],
-                                  "; its meaning is in MUMPS' manual under INFOG(1)"));
+    throw NumericalFailure(concat("mumps: ", where, ": ", words_of(id_.infog[0]),
+                                  " (INFOG(1) = ", id_.infog[0], ", INFOG(2) = ", id_.infog[1],
+                                  "); try another solver or ordering"));
   }
 
   /// MUMPS' manual counts from 1.

@@ -80,7 +80,7 @@ class Umfpack final : public LinearSolver {
     if (numeric_ == nullptr) {
       return {};
     }
-    return {.entries = info_[UMFPACK_LNZ] + info_[UMFPACK_UNZ],
+    return {.entries = info_[UMFPACK_LNZ] + info_[UMFPACK_UNZ] - size(),
             .bytes = info_[UMFPACK_PEAK_MEMORY] * info_[UMFPACK_SIZE_OF_UNIT],
             .flops = info_[UMFPACK_FLOPS],
             .inertia = {}};

@@ -21,6 +21,7 @@ LIBRARIES = {
     "cli11": r"CLI/",
     "json": r"nlohmann/",
     "fmt": r"fmt/",
+    "zlib": r"zlib\.h$",
     "gtest": r"g(test|mock)/",
     "benchmark": r"benchmark/",
     "mujoco": r"mujoco/",
@@ -59,7 +60,7 @@ MORE = {"adjoint/programs/load_problem": ("core/scene",), "adjoint/study": ("adj
 PAGE = "doc/architecture.md"
 # Programs stand on the whole library.
 PROGRAMS = {
-    "examples": ("eigen", "cli11", "json", "fmt", "posix", "suitesparse"),
+    "examples": ("eigen", "cli11", "json", "fmt", "posix", "zlib"),
     "tests": tuple(LIBRARIES),
 }
 # Mechanics opens no file and prints nothing.

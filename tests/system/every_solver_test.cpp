@@ -43,6 +43,46 @@ double backward_error_bound(const std::string& solver) {
   return solver == "cholmod_normal" ? 1e-8 : 1e-14;
 }
 
+TEST(EverySolver, CountsTheEntriesOfBothFactorsAndTheirDiagonalOnce) {
+  // Without fill: a diagonal, and a tridiagonal matrix in its own order; filled: a whole one.
+  constexpr int kRows = 40;
+  std::vector<Eigen::Triplet<double>> band;
+  for (int i = 0; i < kRows; ++i) {
+    band.emplace_back(i, i, 4.0);
+    if (i > 0) {
+      band.emplace_back(i, i - 1, 1.0);
+      band.emplace_back(i - 1, i, 1.0);
+    }
+  }
+  solvers::SparseMatrix tridiagonal(kRows, kRows);
+  tridiagonal.setFromTriplets(band.begin(), band.end());
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Constant(kRows, kRows, 0.5);
+  whole.diagonal().array() += kRows;
+  solvers::SparseMatrix diagonal(kRows, kRows);
+  diagonal.setIdentity();
+  for (const SolverEntry& entry : solvers::available_solvers()) {
+    const Structure structure =
+        entry.claims(Structure::kDefinite) ? Structure::kDefinite : Structure::kGeneral;
+    if (!entry.claims(structure) || entry.name == "lapack_band" || entry.name == "spqr" ||
+        entry.name == "cholmod_normal") {
+      continue;  // whole bands; reflections; A Aᵀ
+    }
+    const auto entries_of = [&](const solvers::SparseMatrix& A) {
+      const auto solver = solvers::make_solver(entry.name, {.structure = structure}, A);
+      solver->analyze(A);
+      solver->factorize(A);
+      return solver->factor_info().entries;
+    };
+    EXPECT_EQ(entries_of(whole.sparseView()), kRows * kRows) << entry.name;
+    if (entry.name != "block_banded") {  // whose blocks count whole
+      EXPECT_EQ(entries_of(diagonal), kRows) << entry.name;
+      EXPECT_GE(entries_of(tridiagonal), tridiagonal.nonZeros()) << entry.name;
+      EXPECT_LE(entries_of(tridiagonal), 1.5 * static_cast<double>(tridiagonal.nonZeros()))
+          << entry.name;
+    }
+  }
+}
+
 struct SystemCase {
   SystemKind kind;
   bool contact;

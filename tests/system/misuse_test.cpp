@@ -30,7 +30,18 @@
 namespace hbar {
 namespace {
 
-using namespace testing::misuse;
+using testing::misuse::chain;
+using testing::misuse::failed;
+using testing::misuse::horizon;
+using testing::misuse::inputs;
+using testing::misuse::Misuse;
+using testing::misuse::objective;
+using testing::misuse::options;
+using testing::misuse::problem;
+using testing::misuse::set_of_two;
+using testing::misuse::three;
+using testing::misuse::trajectory;
+using testing::misuse::two;
 
 /// Everything that takes a trajectory, given one that is not of `of`.
 void use(const Horizon& of, const Trajectory& other, int way) {
@@ -191,11 +202,21 @@ std::vector<Misuse> of_trajectories() {
        }},
       {"OfAnotherTimeStep",
        [](int way) { use(horizon(), trajectory(horizon().with(options(0.05))), way); }},
+      {"OfAnotherMethod",
+       [](int way) {
+         SimulationOptions other = options();
+         other.integrator = "bdf1";
+         use(horizon(), trajectory(horizon().with(other)), way);
+       }},
       {"OfMoreSteps",
        [](int way) { use(horizon(), trajectory(horizon().with(options(0.01, 30))), way); }}};
   const std::vector<std::string> said = {"it is of another model, 'three'",
-                                         "with 0 free parameters", "2 others",
-                                         "20 steps end at 1, ", "it has 30 steps"};
+                                         "with 0 free parameters",
+                                         "2 others",
+                                         "20 steps end at 1, ",
+                                         "its steps are bdf1's, the "
+                                         "horizon's are bdf2's",
+                                         "it has 30 steps"};
   const char* const ways[] = {"Gradient",       "AssembledGradient", "Tangent",
                               "HessianProduct", "Linearizer",        "Values"};
   for (int way = 0; way < 6; ++way) {

@@ -22,7 +22,16 @@
 namespace hbar {
 namespace {
 
-using namespace testing::misuse;
+using testing::misuse::horizon;
+using testing::misuse::inputs;
+using testing::misuse::Misuse;
+using testing::misuse::objective;
+using testing::misuse::options;
+using testing::misuse::problem;
+using testing::misuse::set_of_two;
+using testing::misuse::three;
+using testing::misuse::trajectory;
+using testing::misuse::two;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 

@@ -40,8 +40,8 @@ TEST(Klu, FillsAnArrowLessByMinimumDegree) {
         testing::factorized(make_klu, options_of(Ordering::kNatural, width), A)->factor_info();
     const FactorInfo amd =
         testing::factorized(make_klu, options_of(Ordering::kAmd, width), A)->factor_info();
-    EXPECT_EQ(natural.entries, n * (n + 1.0));  // the diagonals of both factors count
-    EXPECT_EQ(amd.entries, 2.0 * (2.0 * n - 1.0));
+    EXPECT_EQ(natural.entries, n * n);
+    EXPECT_EQ(amd.entries, 3.0 * n - 2.0);
     EXPECT_LT(amd.bytes, 0.1 * natural.bytes);
     ASSERT_TRUE(natural.flops && amd.flops);
     EXPECT_EQ(*amd.flops, 3.0 * (n - 1.0));  // a division, a product and a difference each
@@ -55,7 +55,7 @@ TEST(Klu, FindsTheBlocksOfATriangularMatrixUnlessTheOrderIsGiven) {
   const auto entries_of = [&A](Ordering ordering) {
     return testing::factorized(make_klu, options_of(ordering), A)->factor_info();
   };
-  EXPECT_EQ(entries_of(Ordering::kAmd).entries, static_cast<double>(A.nonZeros()) + 24.0);
+  EXPECT_EQ(entries_of(Ordering::kAmd).entries, static_cast<double>(A.nonZeros()));
   EXPECT_GT(*entries_of(Ordering::kNatural).flops, *entries_of(Ordering::kAmd).flops);
 }
 
