@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <unordered_set>
 #include <utility>
 
@@ -18,11 +20,22 @@ std::string integrator_name(scene::Integrator integrator) {
   return kNames[static_cast<std::size_t>(integrator)];
 }
 
+/// Steps that reach a duration; one that is a multiple of h but for rounding needs no further step.
+int steps_of(double duration, double h) {
+  const double steps = std::ceil(duration / h * (1.0 - 1e-12));
+  if (!(duration > 0.0) || !(steps <= std::numeric_limits<int>::max())) {
+    throw InvalidInput(concat("the time to simulate is ", duration, " with steps of ", h,
+                              "; it must be positive, and at most ",
+                              std::numeric_limits<int>::max(), " steps"));
+  }
+  return std::max(1, static_cast<int>(steps));
+}
+
 SimulationOptions simulation_options(const scene::Description& scene, const LoadOptions& options) {
   SimulationOptions out;
   out.integrator = options.integrator.value_or(integrator_name(scene.options.integrator));
   out.h = options.h.value_or(scene.options.timestep);
-  out.steps = options.steps;
+  out.steps = options.duration ? steps_of(*options.duration, out.h) : options.steps;
   out.newton.tol = options.newton_tol.value_or(scene.solver_options.tol);
   out.newton.rtol = scene.solver_options.rtol.value_or(out.newton.rtol);
   out.newton.max_iter = scene.solver_options.max_iter;

@@ -28,7 +28,9 @@ struct LoadOptions {
   std::optional<std::string> integrator;  ///< else the scene's
   std::optional<double> h;                ///< time step, time, > 0; else the scene's
   int steps = 100;                        ///< N ≥ 1
-  std::optional<double> newton_tol;       ///< on ‖g‖₂, > 0; else the scene's
+  /// Time to simulate, > 0: as many steps as reach it, in place of `steps`.
+  std::optional<double> duration;
+  std::optional<double> newton_tol;  ///< on ‖g‖₂, > 0; else the scene's
   /// For the gradient: a name that solver_factory knows, "auto" or "sweep"; else the scene's.
   std::optional<std::string> linear_solver;
   ParameterChoice parameters = ParameterChoice::kMask;

@@ -2,14 +2,15 @@
 
 #include "hbar/core/base/error.h"
 #include "hbar/core/files/numbers.h"
+#include "hbar/core/files/row_checksum.h"
 
 namespace hbar::study {
 namespace {
 
-// What a line holds beside the numbers: job, outcome, objective before them, status and message
-// after them.
+// What a line holds beside the numbers: job, outcome, objective before them, status, message and
+// checksum after them.
 constexpr std::size_t kBefore = 3;
-constexpr std::size_t kAfter = 2;
+constexpr std::size_t kAfter = 3;
 
 std::string study_line(const JobOptions& options) {
   return concat("# study \"", scene::quotable(options.name), "\", seed ", options.seed, ", ",
@@ -21,7 +22,7 @@ std::string heading_line(const JobOptions& options) {
   for (const std::string& column : options.columns) {
     text += ',' + scene::csv_cell(column);
   }
-  return text + ",status,message";
+  return text + ",status,message,checksum";
 }
 
 std::string outcome_word(const JobResult& result) {
@@ -41,7 +42,8 @@ std::string job_line(int index, const JobResult& result, std::size_t columns) {
       text += scene::format_number(result.numbers[i]);
     }
   }
-  return text + ',' + scene::csv_cell(result.status) + ',' + scene::csv_cell(result.message);
+  return scene::with_checksum(text + ',' + scene::csv_cell(result.status) + ',' +
+                              scene::csv_cell(result.message));
 }
 
 std::string job_table(const JobOptions& options,
@@ -56,7 +58,7 @@ std::string job_table(const JobOptions& options,
   return text;
 }
 
-std::pair<int, JobResult> read_job(const scene::CsvRow& row, const JobOptions& options,
+std::pair<int, JobResult> read_job(scene::CsvRow row, const JobOptions& options,
                                    const std::string& file) {
   const std::size_t columns = options.columns.size();
   if (row.size() != kBefore + columns + kAfter) {
@@ -64,6 +66,7 @@ std::pair<int, JobResult> read_job(const scene::CsvRow& row, const JobOptions& o
         row.back(), file,
         concat("a line of ", row.size(), " cells; the heading has ", kBefore + columns + kAfter));
   }
+  scene::take_checksum(row, file);
   const int index = scene::integer_in(row[0], file);
   if (index < 0 || index >= options.count) {
     scene::fail_at(row[0], file, concat("job ", index, " is not one of 0 to ", options.count - 1));

@@ -23,9 +23,9 @@ namespace hbar::study {
 /// @param row      of a table of results
 /// @param options  of its study
 /// @param file     for messages
-/// @throws InvalidInput that begins `file:line:column:`
-[[nodiscard]] std::pair<int, JobResult> read_job(const scene::CsvRow& row,
-                                                 const JobOptions& options,
+/// @throws InvalidInput that begins `file:line:column:`, also for a line that its checksum (see
+///   row_checksum.h) shows to be damaged
+[[nodiscard]] std::pair<int, JobResult> read_job(scene::CsvRow row, const JobOptions& options,
                                                  const std::string& file);
 
 /// The contents of a table of results.                                                 [count]

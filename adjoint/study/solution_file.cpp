@@ -9,13 +9,14 @@
 #include "hbar/core/files/csv.h"
 #include "hbar/core/files/numbers.h"
 #include "hbar/core/files/result_file.h"
+#include "hbar/core/files/row_checksum.h"
 #include "hbar/core/files/text_file.h"
 
 namespace hbar::study {
 namespace {
 
 constexpr const char* kFormat = "hbar-solution";
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 
 void check_count(Eigen::Index found, std::size_t expected, const char* what) {
   if (found != static_cast<Eigen::Index>(expected)) {
@@ -45,11 +46,11 @@ void append(Eigen::VectorXd& numbers, double number) {
 }
 
 /// Reads one row by its first word.
-void read_solution_row(const scene::CsvRow& row, const std::string& file, SolutionText& out) {
-  const std::string& kind = row[0].text;
+void read_solution_row(scene::CsvRow row, const std::string& file, SolutionText& out) {
+  const std::string kind = row[0].text;
   const std::map<std::string, std::size_t> cells = {
-      {"status", 2},   {"objective", 2},  {"mu", 2}, {"about", 3},
-      {"variable", 5}, {"constraint", 3}, {"end", 3}};
+      {"status", 3},   {"objective", 3},  {"mu", 3}, {"about", 4},
+      {"variable", 6}, {"constraint", 4}, {"end", 3}};
   const auto known = cells.find(kind);
   if (known == cells.end()) {
     scene::fail_at(row[0], file,
@@ -59,6 +60,9 @@ void read_solution_row(const scene::CsvRow& row, const std::string& file, Soluti
     scene::fail_at(
         row.back(), file,
         concat("\"", kind, "\" has ", row.size() - 1, " entries; it takes ", known->second - 1));
+  }
+  if (kind != "end") {
+    scene::take_checksum(row, file);
   }
   Solution& solution = out.solution;
   if (kind == "end") {
@@ -139,25 +143,27 @@ std::string solution_text(const Solution& solution) {
   check_count(point.upper_multipliers.size(), n, "multipliers of upper bounds");
   check_count(point.constraint_multipliers.size(), m, "multipliers of constraints");
 
-  std::string text = concat(kFormat, ',', kVersion, "\nstatus,", scene::csv_cell(solution.status));
-  text += "\nobjective" + finite_number(solution.objective, "objective");
-  text += "\nmu" + finite_number(point.mu, "mu") + '\n';
+  std::string text = concat(kFormat, ',', kVersion, '\n');
+  const auto add = [&text](const std::string& line) { text += scene::with_checksum(line) + '\n'; };
+  add("status," + scene::csv_cell(solution.status));
+  add("objective" + finite_number(solution.objective, "objective"));
+  add("mu" + finite_number(point.mu, "mu"));
   for (const auto& [key, value] : solution.about) {
-    text += "about," + scene::csv_cell(key) + ',' + scene::csv_cell(value) + '\n';
+    add("about," + scene::csv_cell(key) + ',' + scene::csv_cell(value));
   }
-  text += "# variable, name, value, multiplier of its lower bound, of its upper bound\n";
+  text += "# variable, name, value, multiplier of its lower bound, of its upper bound, checksum\n";
   for (std::size_t i = 0; i < n; ++i) {
     const std::string& name = solution.variable_names[i];
     const auto row = static_cast<Eigen::Index>(i);
-    text += "variable," + scene::csv_cell(name) + finite_number(point.x[row], name) +
-            finite_number(point.lower_multipliers[row], name) +
-            finite_number(point.upper_multipliers[row], name) + '\n';
+    add("variable," + scene::csv_cell(name) + finite_number(point.x[row], name) +
+        finite_number(point.lower_multipliers[row], name) +
+        finite_number(point.upper_multipliers[row], name));
   }
-  text += "# constraint, name, multiplier\n";
+  text += "# constraint, name, multiplier, checksum\n";
   for (std::size_t i = 0; i < m; ++i) {
     const std::string& name = solution.constraint_names[i];
-    text += "constraint," + scene::csv_cell(name) +
-            finite_number(point.constraint_multipliers[static_cast<Eigen::Index>(i)], name) + '\n';
+    add("constraint," + scene::csv_cell(name) +
+        finite_number(point.constraint_multipliers[static_cast<Eigen::Index>(i)], name));
   }
   return text + concat("end,", n, ',', m, '\n');
 }

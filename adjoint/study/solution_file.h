@@ -27,7 +27,7 @@ struct Solution {
                                    std::map<std::string, std::string> about = {});
 
 /// Writes a solution as text that a person or a spreadsheet can read; atomically. Numbers are read
-/// back exactly.
+/// back exactly, and each line ends with a checksum: to change a number by hand, empty that cell.
 ///
 /// @throws InvalidInput if sizes disagree or a number is not finite
 /// @throws IoError if the file cannot be written
@@ -35,7 +35,7 @@ void save_solution(const std::filesystem::path& path, const Solution& solution);
 
 /// Reads what save_solution wrote.
 ///
-/// @throws InvalidInput that begins `file:line:` if it is not such a file
+/// @throws InvalidInput that begins `file:line:` if it is not such a file, or names what is damaged
 /// @throws IoError if the file cannot be read
 [[nodiscard]] Solution read_solution(const std::filesystem::path& path);
 

@@ -18,7 +18,7 @@ using Edge = std::pair<int, int>;
 
 constexpr double kNearVertices = 1e-6;  ///< of the bounding box's diagonal
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t slot(int index) { return static_cast<std::size_t>(index); }
 
 double diagonal_of(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
@@ -59,13 +59,13 @@ TriangleMesh with_merged(const TriangleMesh& mesh, const std::vector<int>& one) 
   TriangleMesh merged;
   std::vector<int> new_index(mesh.vertices.size(), -1);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    if (at(one[i]) == i) {
+    if (slot(one[i]) == i) {
       new_index[i] = static_cast<int>(merged.vertices.size());
       merged.vertices.push_back(mesh.vertices[i]);
     }
   }
   for (const Triangle& t : mesh.triangles) {
-    const auto moved = [&](int corner) { return new_index[at(one[at(corner)])]; };
+    const auto moved = [&](int corner) { return new_index[slot(one[slot(corner)])]; };
     const Triangle now = {moved(t[0]), moved(t[1]), moved(t[2])};
     if (!repeats_a_corner(now)) {
       merged.triangles.push_back(now);
@@ -91,7 +91,7 @@ std::vector<int> near_vertices(const TriangleMesh& mesh, double distance) {
           cell[0] + offset % 3 - 1, cell[1] + offset / 3 % 3 - 1, cell[2] + offset / 9 - 1};
       const auto place = cells.find(beside);
       for (const int other : place == cells.end() ? std::vector<int>() : place->second) {
-        const bool near = (mesh.vertices[at(other)] - point).norm() < distance;
+        const bool near = (mesh.vertices[slot(other)] - point).norm() < distance;
         if (near && (found < 0 || other < found)) {
           found = other;
         }
@@ -107,9 +107,9 @@ std::vector<int> near_vertices(const TriangleMesh& mesh, double distance) {
 
 /// Twice the area over the longest side: the height over it.
 double height_of(const TriangleMesh& mesh, const Triangle& t) {
-  const Eigen::Vector3d& a = mesh.vertices[at(t[0])];
-  const Eigen::Vector3d ab = mesh.vertices[at(t[1])] - a;
-  const Eigen::Vector3d ac = mesh.vertices[at(t[2])] - a;
+  const Eigen::Vector3d& a = mesh.vertices[slot(t[0])];
+  const Eigen::Vector3d ab = mesh.vertices[slot(t[1])] - a;
+  const Eigen::Vector3d ac = mesh.vertices[slot(t[2])] - a;
   const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
   return longest > 0.0 ? ab.cross(ac).norm() / longest : 0.0;
 }
@@ -122,13 +122,13 @@ std::size_t drop_flat(TriangleMesh& mesh, double height) {
 /// The open end of another triangle nearest to the beginning of an open edge, on its way; none: −1.
 int vertex_on(const TriangleMesh& mesh, const Edge& edge, const std::vector<int>& ends,
               double near) {
-  const Eigen::Vector3d& from = mesh.vertices[at(edge.first)];
-  const Eigen::Vector3d way = mesh.vertices[at(edge.second)] - from;
+  const Eigen::Vector3d& from = mesh.vertices[slot(edge.first)];
+  const Eigen::Vector3d way = mesh.vertices[slot(edge.second)] - from;
   const double length = way.norm();
   int found = -1;
   double first = length - near;
   for (const int end : ends) {
-    const Eigen::Vector3d offset = mesh.vertices[at(end)] - from;
+    const Eigen::Vector3d offset = mesh.vertices[slot(end)] - from;
     const double along = way.dot(offset) / length;
     if (end != edge.first && end != edge.second && along > near && along < first &&
         (offset - along / length * way).norm() < near) {
@@ -212,7 +212,7 @@ void check_indices(const TriangleMesh& mesh) {
   }
   for (const Triangle& t : mesh.triangles) {
     for (const int corner : t) {
-      if (corner < 0 || at(corner) >= mesh.vertices.size()) {
+      if (corner < 0 || slot(corner) >= mesh.vertices.size()) {
         throw InvalidInput(concat("mesh: a triangle has vertex ", corner + 1, "; there are ",
                                   mesh.vertices.size()));
       }

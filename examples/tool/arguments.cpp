@@ -57,12 +57,16 @@ struct OptionRow {
   const char* sentence;
 };
 
-constexpr std::array<OptionRow, 29> kOptions = {{
+constexpr std::array<OptionRow, 31> kOptions = {{
     {"--steps", "N", kInRuns, "Number of time steps (100)."},
+    {"--time", "T", kInRuns, "Time to simulate in seconds, in place of --steps."},
     {"--dt", "H", kInRuns, "Time step in seconds (the scene's)."},
     {"--integrator", "NAME", kInRuns, "bdf1, bdf2 or sdirk2 (the scene's)."},
     {"--q0", "LIST", kInRuns, "Initial coordinates, rad or length (zeros)."},
     {"--qdot0", "LIST", kInRuns, "Initial rates of the coordinates (zeros)."},
+    {"--from", "CSV:ROW", kInRuns,
+     "Initial coordinates and rates from a row of a table that --csv wrote; 0 is its first row, -1 "
+     "and none its last."},
     {"--controls", "FILE", kInRuns, "Controls: a row per step, a column per control (zeros)."},
     {"--params", "SET", kInInfo | kInRuns,
      "Design parameters: mask (the scene's design_params), all, none, or a list of names (mask)."},
@@ -152,6 +156,10 @@ Arguments read(Command command, std::string scene, const Given& given) {
     out.load.max_memory = std::numeric_limits<double>::infinity();
   }
   out.load.keep_factors = command == Command::kGradient || command == Command::kCheck;
+  out.load.duration = positive_number(given, "--time");
+  if (out.load.duration && given.contains("--steps")) {
+    usage("--time and --steps both say how long to simulate; give one of them");
+  }
   out.load.h = positive_number(given, "--dt");
   out.load.integrator = integrator(given);
   out.load.newton_tol = positive_number(given, "--newton-tol");
@@ -163,6 +171,10 @@ Arguments read(Command command, std::string scene, const Given& given) {
   read_parameters(given, out.load);
   out.q0 = numbers(given, "--q0");
   out.qdot0 = numbers(given, "--qdot0");
+  out.from = file(given, "--from");
+  if (out.from && (out.q0 || out.qdot0)) {
+    usage("--from gives the initial state; leave out --q0 and --qdot0");
+  }
   out.controls = file(given, "--controls");
   out.out = file(given, "--out");
   out.csv = file(given, "--csv");

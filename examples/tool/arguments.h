@@ -20,6 +20,7 @@ struct Arguments {
   LoadOptions load;
   std::optional<std::vector<double>> q0;     ///< rad or length; else zeros      [dof]
   std::optional<std::vector<double>> qdot0;  ///< else zeros                     [dof]
+  std::optional<std::string> from;           ///< a file and perhaps a row: --from; else q0, qdot0
   std::optional<std::string> controls;       ///< a file; else zeros
   std::optional<std::string> out;            ///< JSON file; "-" is standard output
   std::optional<std::string> csv;            ///< CSV file; "-" is standard output

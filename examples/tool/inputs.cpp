@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "entries.h"
 #include "examples/common/process.h"
@@ -12,6 +13,7 @@
 #include "hbar/core/files/text_file.h"
 #include "labels.h"
 #include "results_memory.h"
+#include "start_row.h"
 
 namespace hbar::tool {
 
@@ -108,6 +110,18 @@ void set_state(const std::optional<std::vector<double>>& given, std::string_view
       Eigen::Map<const Eigen::VectorXd>(given->data(), static_cast<Eigen::Index>(given->size()));
 }
 
+/// A time that the steps do not end at.
+void notice_time(const Arguments& arguments, LoadedProblem& loaded) {
+  const SimulationOptions& options = loaded.problem.horizon.options();
+  const double end = options.steps * options.h;
+  if (arguments.load.duration && std::abs(end - *arguments.load.duration) > 1e-9 * end) {
+    loaded.notices.push_back(
+        fmt::format("--time {:g} is no multiple of the time step {:g}; the simulation takes {} "
+                    "steps and ends at {:g}",
+                    *arguments.load.duration, options.h, options.steps, end));
+  }
+}
+
 /// Total mass of the bodies.
 double mass_of(const Model& model) {
   double mass = 0.0;
@@ -150,8 +164,12 @@ LoadedProblem load(const Arguments& arguments) {
     const Model& model = loaded.problem.horizon.model();
     set_state(arguments.q0, "--q0", model, inputs.q0);
     set_state(arguments.qdot0, "--qdot0", model, inputs.qdot0);
+    if (arguments.from) {
+      loaded.files.push_back(read_start_row(*arguments.from, model, inputs));
+    }
+    notice_time(arguments, loaded);
     if (arguments.controls) {
-      inputs.u = read_controls(*arguments.controls, model, arguments.load.steps);
+      inputs.u = read_controls(*arguments.controls, model, loaded.problem.horizon.steps());
       loaded.files.emplace_back(*arguments.controls);
     }
     notice_start(loaded);

@@ -97,7 +97,7 @@ void require_memory(const Arguments& arguments, const LoadedProblem& loaded) {
     usage(
         fmt::format("--steps: {} steps and their results take about {:.3g} GB; the limit is {:.3g} "
                     "GB: take fewer steps",
-                    arguments.load.steps, bytes * 1e-9, limit * 1e-9));
+                    loaded.problem.horizon.steps(), bytes * 1e-9, limit * 1e-9));
   }
 }
 

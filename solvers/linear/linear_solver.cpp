@@ -210,14 +210,27 @@ void LinearSolver::solve(System system, const MatrixView& B, MatrixSpan X) {
   }
   if (X.data() == B.data() && X.size() > 0) {
     kept_rhs_ = B;
-    solve_in_place(system, X);
-    check_solution(system, kept_rhs_, X);
+    solve_and_check(system, kept_rhs_, X);
   } else {
-    X = B;
-    solve_in_place(system, X);
-    check_solution(system, B, X);
+    solve_and_check(system, B, X);
   }
   statistics_.solves += static_cast<int>(B.cols());
+}
+
+/// Solves, with other factors if need be, and refuses a solution that is wrong.
+void LinearSolver::solve_and_check(System system, const MatrixView& B, MatrixSpan X) {
+  Refusal refusal = solve_and_refine(system, B, X);
+  if (refusal.column >= 0 && do_factorize_strictly()) {
+    ++statistics_.factorizations;
+    refusal = solve_and_refine(system, B, X);
+  }
+  if (refusal.column >= 0) {
+    throw NumericalFailure(concat(
+        name(), ": the scaled residual of ", symbol(system), ", right-hand side ", refusal.column,
+        ", is ", refusal.residual, " after refinement; allowed: ", bounds_.refuse_above, " (",
+        matrix_.rows(), " x ", matrix_.cols(),
+        " matrix); try another solver, or bring the unknowns to similar sizes"));
+  }
 }
 
 void LinearSolver::solve_in_place(System system, MatrixSpan X) {
@@ -252,8 +265,11 @@ double LinearSolver::scaled(System system, const VectorView<double>& residual,
   return size > 0.0 ? residual.lpNorm<Eigen::Infinity>() / size : 0.0;
 }
 
-/// Refines a solution that needs it and refuses one that is wrong.
-void LinearSolver::check_solution(System system, const MatrixView& B, MatrixSpan X) {
+/// Solves and refines what needs it; returns the first solution that is wrong nevertheless.
+LinearSolver::Refusal LinearSolver::solve_and_refine(System system, const MatrixView& B,
+                                                     MatrixSpan X) {
+  X = B;
+  solve_in_place(system, X);
   for (Eigen::Index j = 0; j < B.cols(); ++j) {
     double residual = has_residuals_ ? scaled(system, residuals_.col(j), B.col(j), X.col(j))
                                      : scaled_residual(system, B.col(j), X.col(j));
@@ -277,14 +293,11 @@ void LinearSolver::check_solution(System system, const MatrixView& B, MatrixSpan
       }
     }
     if (!(residual <= bounds_.refuse_above)) {
-      throw NumericalFailure(
-          concat(name(), ": the scaled residual of ", symbol(system), ", right-hand side ", j,
-                 ", is ", residual, " after refinement; allowed: ", bounds_.refuse_above, " (",
-                 matrix_.rows(), " x ", matrix_.cols(),
-                 " matrix); try another solver, or bring the unknowns to similar sizes"));
+      return {.column = j, .residual = residual};
     }
     statistics_.worst_residual = std::max(statistics_.worst_residual, residual);
   }
+  return {};
 }
 
 void LinearSolver::set_residual_bounds(const ResidualBounds& bounds) {

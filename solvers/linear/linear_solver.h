@@ -154,6 +154,9 @@ class LinearSolver {
   /// Factorises matrix(), whose values are finite. Reports a singular matrix by find_small_pivot
   /// and throw_singular, or in another way.
   virtual void do_factorize() = 0;
+  /// Factorises matrix() again with pivots chosen more strictly, for a solution that is too
+  /// inaccurate although the matrix is not singular; false if there is no stricter choice.
+  virtual bool do_factorize_strictly() { return false; }
   /// Overwrites right-hand sides by solutions.
   ///
   /// @param X  finite; columns contiguous  [n x r]
@@ -206,7 +209,13 @@ class LinearSolver {
   void throw_not_finite(int column) const;
   void measure_columns();
   void refuse_unusable_pattern(const SparseMatrix& A) const;
-  void check_solution(System system, const MatrixView& B, MatrixSpan X);
+  /// A solution that is too inaccurate.
+  struct Refusal {
+    Eigen::Index column = -1;  // of the right-hand sides; −1: none is
+    double residual = 0.0;
+  };
+  void solve_and_check(System system, const MatrixView& B, MatrixSpan X);
+  Refusal solve_and_refine(System system, const MatrixView& B, MatrixSpan X);
   void solve_in_place(System system, MatrixSpan X);
   double scaled_residual(System system, const VectorView<double>& b, const VectorView<double>& x);
   double scaled(System system, const VectorView<double>& residual, const VectorView<double>& b,

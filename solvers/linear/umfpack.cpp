@@ -40,6 +40,12 @@ struct Api<WideIndex> {
   static constexpr auto kFreeSymbolic = &umfpack_dl_free_symbolic;
 };
 
+// A pivot is at least this share of the largest in its column: UMFPACK's own choice, which keeps
+// factors sparse, and one for matrices whose factors it lets grow too far (of a periodic system of
+// condition 2e6 to 3e13).
+constexpr double kPivotShare = 0.1;
+constexpr double kStrictPivotShare = 0.5;
+
 int strategy_of(Ordering ordering) {
   if (ordering == Ordering::kAmd) {
     return UMFPACK_STRATEGY_SYMMETRIC;
@@ -89,6 +95,7 @@ class Umfpack final : public LinearSolver {
  private:
   void do_analyze() override {
     release();
+    control_[UMFPACK_PIVOT_TOLERANCE] = kPivotShare;
     const auto n = static_cast<std::size_t>(size());
     indices_.assign(matrix());
     {
@@ -136,6 +143,16 @@ class Umfpack final : public LinearSolver {
     if (status != UMFPACK_OK) {
       throw_status("factorize", status);
     }
+  }
+
+  /// The strict choice holds until the next analysis.
+  bool do_factorize_strictly() override {
+    if (control_[UMFPACK_PIVOT_TOLERANCE] == kStrictPivotShare) {
+      return false;
+    }
+    control_[UMFPACK_PIVOT_TOLERANCE] = kStrictPivotShare;
+    do_factorize();
+    return true;
   }
 
   void do_solve(System system, MatrixSpan X) override {

@@ -76,7 +76,7 @@ TEST_F(CorpusCommand, MatricesOfOthersAreMeasuredToo) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const json matrices = result("r.json").at("matrices");
   ASSERT_EQ(matrices.size(), 3U);
-  EXPECT_NE(matrices[0].at("failure").get<std::string>().find(broken + ": the first line"),
+  EXPECT_NE(matrices[0].at("failure").get<std::string>().find(broken + ":1: the first line"),
             std::string::npos)
       << matrices[0];
   EXPECT_EQ(matrices[1].at("structure"), "definite");

@@ -26,9 +26,10 @@ std::vector<std::optional<JobResult>> small_results() {
 TEST(JobTable, IsALinePerJobBelowAHeading) {
   EXPECT_EQ(job_table(small_study(), small_results()),
             "# study \"small\", seed 7, 3 jobs\n"
-            "job,outcome,objective,\"length, m\",mass,status,message\n"
-            "0,converged,0.1,0.3333333333333333,-1e-300,optimal,\"said \"\"yes\"\",\nand more\"\n"
-            "2,failed,,,,failed,threw\n");
+            "job,outcome,objective,\"length, m\",mass,status,message,checksum\n"
+            "0,converged,0.1,0.3333333333333333,-1e-300,optimal,\"said \"\"yes\"\",\nand "
+            "more\",9bd75e4b\n"
+            "2,failed,,,,failed,threw,1666741d\n");
 }
 
 TEST(JobTable, IsReadToTheLastBit) {
@@ -70,11 +71,15 @@ TEST(JobTable, ThatWasDamagedIsRefusedWithThePlace) {
     return testing::message_of<InvalidInput>(
         [&] { (void)read_job_table(head + line, options, "t.csv"); });
   };
-  EXPECT_EQ(refusal("1,ended,2,3,4,,"), "");
-  EXPECT_EQ(refusal("3,ended,2,3,4,,"), "t.csv:3:1: job 3 is not one of 0 to 2");
-  EXPECT_EQ(refusal("1,lost,2,3,4,,"), "t.csv:3:3: \"lost\" is not converged, ended or failed");
-  EXPECT_EQ(refusal("1,ended,2,3x,4,,"), "t.csv:3:11: \"3x\" is not a finite number");
-  EXPECT_EQ(refusal("1,ended,2,3"), "t.csv:3:11: a line of 4 cells; the heading has 7");
+  EXPECT_EQ(refusal("1,ended,2,3,4,,,"), "");
+  EXPECT_EQ(refusal("3,ended,2,3,4,,,"), "t.csv:3:1: job 3 is not one of 0 to 2");
+  EXPECT_EQ(refusal("1,lost,2,3,4,,,"), "t.csv:3:3: \"lost\" is not converged, ended or failed");
+  EXPECT_EQ(refusal("1,ended,2,3x,4,,,"), "t.csv:3:11: \"3x\" is not a finite number");
+  EXPECT_EQ(
+      refusal("1,ended,2,3,4,,00000000"),
+      "t.csv:3:16: this line was changed or damaged after it was written: its checksum is "
+      "\"00000000\" and not 1a55bc6f; restore it, or empty this cell to take the line as it is");
+  EXPECT_EQ(refusal("1,ended,2,3"), "t.csv:3:11: a line of 4 cells; the heading has 8");
 }
 
 }  // namespace

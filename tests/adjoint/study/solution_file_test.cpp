@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <vector>
@@ -64,47 +65,47 @@ TEST_F(SolutionFile, IsReadToTheLastBit) {
 TEST_F(SolutionFile, IsATextThatCanBeRead) {
   save_solution(folder_ / "s", odd_solution());
   EXPECT_EQ(scene::read_text_file(folder_ / "s"),
-            "hbar-solution,2\n"
-            "status,iteration limit\n"
-            "objective,0.30000000000000004\n"
-            "mu,1e-09\n"
-            "about,note,\"two\nlines\"\n"
-            "about,scene,finger.xml\n"
-            "# variable, name, value, multiplier of its lower bound, of its upper bound\n"
-            "variable,\"length, m\",0.3333333333333333,1e+300,0\n"
-            "variable,\"u[3] \"\"grip\"\"\",-5e-324,0,2.5\n"
-            "# constraint, name, multiplier\n"
-            "constraint,reach,-0.1\n"
+            "hbar-solution,3\n"
+            "status,iteration limit,b841a395\n"
+            "objective,0.30000000000000004,11182cd9\n"
+            "mu,1e-09,b4b16c8b\n"
+            "about,note,\"two\nlines\",5ef60154\n"
+            "about,scene,finger.xml,674e75e5\n"
+            "# variable, name, value, multiplier of its lower bound, of its upper bound, checksum\n"
+            "variable,\"length, m\",0.3333333333333333,1e+300,0,8f970acb\n"
+            "variable,\"u[3] \"\"grip\"\"\",-5e-324,0,2.5,34689f56\n"
+            "# constraint, name, multiplier, checksum\n"
+            "constraint,reach,-0.1,c479ebd1\n"
             "end,2,1\n");
 }
 
 TEST_F(SolutionFile, OfAnotherProgramIsRefusedWithWhatDiffers) {
-  const std::string head = "hbar-solution,2\n";
-  const std::string x012 = "variable,x0,1,0,0\nvariable,x1,1,0,0\nvariable,x2,1,0,0\n";
-  const std::string x3 = "variable,x3,1,0,0\n";
-  const std::string c = "constraint,product,1\nconstraint,sphere,1\n";
+  const std::string head = "hbar-solution,3\n";
+  const std::string x012 = "variable,x0,1,0,0,\nvariable,x1,1,0,0,\nvariable,x2,1,0,0,\n";
+  const std::string x3 = "variable,x3,1,0,0,\n";
+  const std::string c = "constraint,product,1,\nconstraint,sphere,1,\n";
   const std::string end = "end,4,2\n";
   EXPECT_EQ(refusal(head + x012 + x3 + c + end), "");
-  EXPECT_EQ(refusal(head + x012 + "variable,y3,1,0,0\n" + c + end),
+  EXPECT_EQ(refusal(head + x012 + "variable,y3,1,0,0,\n" + c + end),
             ":5:10: another program's solution: variable 3 is \"y3\", not \"x3\"");
   EXPECT_EQ(refusal(head + x012 + c + "end,3,2\n"),
             ":7:7: another program's solution: it has 3 variables, the program 4");
-  EXPECT_EQ(refusal(head + x012 + x3 + "variable,x4,1,0,0\n" + c + "end,5,2\n"),
+  EXPECT_EQ(refusal(head + x012 + x3 + "variable,x4,1,0,0,\n" + c + "end,5,2\n"),
             ":6:10: another program's solution: it has 5 variables, the program 4");
-  EXPECT_EQ(refusal(head + x012 + x3 + "constraint,sphere,1\nconstraint,product,1\n" + end),
+  EXPECT_EQ(refusal(head + x012 + x3 + "constraint,sphere,1,\nconstraint,product,1,\n" + end),
             ":6:12: another program's solution: constraint 0 is \"sphere\", not \"product\"");
 }
 
 TEST_F(SolutionFile, ThatIsNoneIsRefusedWithThePlace) {
-  EXPECT_EQ(refusal(""), ":1: this is no solution, which begins with \"hbar-solution,2\"");
+  EXPECT_EQ(refusal(""), ":1: this is no solution, which begins with \"hbar-solution,3\"");
   EXPECT_EQ(refusal("<redmax/>\n"),
-            ":1: this is no solution, which begins with \"hbar-solution,2\"");
-  EXPECT_EQ(refusal("hbar-solution,1\n"), ":1:15: version 1 of the format; known is 2");
-  EXPECT_EQ(refusal("hbar-solution,2\nvariable,x0,inf,0,0\n"),
+            ":1: this is no solution, which begins with \"hbar-solution,3\"");
+  EXPECT_EQ(refusal("hbar-solution,2\n"), ":1:15: version 2 of the format; known is 3");
+  EXPECT_EQ(refusal("hbar-solution,3\nvariable,x0,inf,0,0,\n"),
             ":2:13: \"inf\" is not a finite number");
-  EXPECT_EQ(refusal("hbar-solution,2\nvariable,x0,1\n"),
-            ":2:13: \"variable\" has 2 entries; it takes 4");
-  EXPECT_EQ(refusal("hbar-solution,2\nangle,x0,1\n"),
+  EXPECT_EQ(refusal("hbar-solution,3\nvariable,x0,1\n"),
+            ":2:13: \"variable\" has 2 entries; it takes 5");
+  EXPECT_EQ(refusal("hbar-solution,3\nangle,x0,1\n"),
             ":2:1: \"angle\" is nothing that a solution has");
 }
 
@@ -116,9 +117,33 @@ TEST_F(SolutionFile, IsRefusedWhereverItWasCut) {
   for (std::size_t length = 0; length + 1 < whole.size(); ++length) {
     EXPECT_NE(refusal(whole.substr(0, length)), "") << length << " of " << whole.size() << " bytes";
   }
-  EXPECT_EQ(refusal("hbar-solution,2\nvariable,x0,1,0,0\nconstraint,c,0.13\n"),
+  EXPECT_EQ(refusal("hbar-solution,3\nvariable,x0,1,0,0,\nconstraint,c,0.13,\n"),
             ":3:14: this solution is not whole: after 1 variables and 1 constraints there is no "
             "line \"end\" that counts them");
+}
+
+TEST_F(SolutionFile, TellsWhichLineIsDamaged) {
+  Hs071 program;
+  static_cast<void>(solve_and_save(program, {}, folder_ / "s"));
+  const std::string whole = scene::read_text_file(folder_ / "s");
+  const auto line = static_cast<long>(whole.find("variable,x2"));
+  const std::string number =
+      ':' + std::to_string(1 + std::count(whole.begin(), whole.begin() + line, '\n')) + ':';
+  const std::size_t end = whole.find('\n', static_cast<std::size_t>(line));
+  for (std::size_t at = static_cast<std::size_t>(line); at < end; ++at) {
+    std::string spoiled = whole;
+    spoiled[at] = spoiled[at] == '1' ? '2' : '1';
+    EXPECT_EQ(refusal(spoiled).find(number), 0U) << refusal(spoiled);
+  }
+  std::string twice = whole;
+  twice.replace(static_cast<std::size_t>(line) + 9, 2, "x3");
+  EXPECT_NE(refusal(twice).find("this line was changed or damaged after it was written: its "
+                                "checksum is \""),
+            std::string::npos)
+      << refusal(twice);
+  std::string edited = whole;
+  edited.replace(end - 8, 8, "");
+  EXPECT_EQ(refusal(edited), "") << "an emptied checksum";
 }
 
 TEST_F(SolutionFile, TakesOnlyFiniteNumbersOfTheRightCount) {
