@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -25,11 +26,19 @@ struct SecondEntry {
   double value = 0.0;
 };
 
+/// Where a partial stands: a row of the term, and the number of a place.
+struct PartialEntry {
+  int row = 0;
+  Index number = 0;
+  friend auto operator<=>(const PartialEntry&, const PartialEntry&) = default;
+};
+
 /// A term of either kind as rows of all numbers of the values.
 struct TermRows {
   std::vector<std::string> names;
+  std::vector<PartialEntry> entries;                               // of its partials
   std::function<VectorXd(const TrajectoryValues&)> values;         // [rows]
-  std::function<MatrixXd(const TrajectoryValues&)> jacobian;       // [rows x numbers]
+  std::function<VectorXd(const TrajectoryValues&)> partials;       // [entries]
   std::function<std::vector<SecondPlace>()> second_places;         // may throw InvalidInput
   std::function<VectorXd(const TrajectoryValues&, Index)> second;  // [count]
 };
@@ -57,13 +66,18 @@ class TermChecker {
       : rows_(std::move(rows)), at_(at), places_(all_places(at)), scale_(scales()) {}
 
   TermCheck check() {
-    jacobian_ = rows_.jacobian(at_) * scale_.asDiagonal();
+    const VectorXd partials = rows_.partials(at_);
+    jacobian_.setZero(static_cast<Index>(rows_.names.size()), count());
+    for (Index k = 0; k < partials.size(); ++k) {
+      const PartialEntry& entry = rows_.entries[static_cast<std::size_t>(k)];
+      jacobian_(entry.row, entry.number) += partials[k] * scale_[entry.number];
+    }
     norms_ = jacobian_.rowwise().norm().unaryExpr([](double x) { return x == 0.0 ? 1.0 : x; });
     for (Index i = 0; i < count(); ++i) {
-      const Difference expected = difference(i, rows_.values);
+      const Difference expected = difference(i, rows_.values, norms_);
       for (Index row = 0; row < norms_.size(); ++row) {
-        const double gap = std::abs(expected.value(row, 0) - jacobian_(row, i)) / norms_[row];
-        if (!is_unresolved(gap, expected.error(row, 0) / norms_[row])) {
+        const double gap = std::abs(expected.value[row] - jacobian_(row, i)) / norms_[row];
+        if (!is_unresolved(gap, expected.error[row] / norms_[row])) {
           note(gap, out_.gap, out_.gap_name,
                [&] { return concat(row_name(row), " by ", name(i)); });
         }
@@ -100,8 +114,8 @@ class TermChecker {
     return out;
   }
 
-  static void note(double gap, double& worst, std::string& worst_name,
-                   const std::function<std::string()>& name) {
+  template <typename Name>
+  static void note(double gap, double& worst, std::string& worst_name, const Name& name) {
     // The first of equals; a gap of NaN stays.
     if (!std::isnan(worst) && !(gap <= worst * (1.0 + 1e-6))) {
       worst = gap;
@@ -111,15 +125,17 @@ class TermChecker {
 
   /// Derivatives by differences, each with an estimate of its error.
   struct Difference {
-    MatrixXd value;
-    MatrixXd error;
+    VectorXd value;
+    VectorXd error;
   };
 
   /// With respect to number i in units of its scale: central, extrapolated once. Terms that
   /// saturate or grow fast need smaller steps than others: for each entry, the step counts whose
   /// result changes least with the next.
+  ///
+  /// @param norms  of the rows that f's entries belong to
   template <typename Function>
-  [[nodiscard]] Difference difference(Index i, const Function& f) const {
+  [[nodiscard]] Difference difference(Index i, const Function& f, const VectorXd& norms) const {
     constexpr int kSteps = 7;
     constexpr double kLargest = 1e-3;
     constexpr double kRatio = 8.0;
@@ -129,27 +145,22 @@ class TermChecker {
       TrajectoryValues behind = at_;
       value_at(ahead, places_[static_cast<std::size_t>(i)]) += step * scale_[i];
       value_at(behind, places_[static_cast<std::size_t>(i)]) -= step * scale_[i];
-      return MatrixXd((f(ahead) - f(behind)) / (2.0 * step));
+      return VectorXd((f(ahead) - f(behind)) / (2.0 * step));
     };
     const auto extrapolated = [&](double step) {
-      return MatrixXd((4.0 * central(0.5 * step) - central(step)) / 3.0);
+      return VectorXd((4.0 * central(0.5 * step) - central(step)) / 3.0);
     };
     double step = kLargest;
-    MatrixXd last = extrapolated(step);
-    Difference best{last, MatrixXd::Constant(last.rows(), last.cols(),
-                                             std::numeric_limits<double>::infinity())};
-    for (int k = 1; k < kSteps &&
-                    !(best.error.rowwise().maxCoeff().cwiseQuotient(norms_).maxCoeff() <= kEnough);
-         ++k) {
+    VectorXd last = extrapolated(step);
+    Difference best{last, VectorXd::Constant(last.size(), std::numeric_limits<double>::infinity())};
+    for (int k = 1; k < kSteps && !(best.error.array() <= kEnough * norms.array()).all(); ++k) {
       step /= kRatio;
-      const MatrixXd next = extrapolated(step);
-      for (Index row = 0; row < next.rows(); ++row) {
-        for (Index column = 0; column < next.cols(); ++column) {
-          const double change = std::abs(next(row, column) - last(row, column));
-          if (change < best.error(row, column)) {
-            best.error(row, column) = change;
-            best.value(row, column) = next(row, column);
-          }
+      const VectorXd next = extrapolated(step);
+      for (Index entry = 0; entry < next.size(); ++entry) {
+        const double change = std::abs(next[entry] - last[entry]);
+        if (change < best.error[entry]) {
+          best.error[entry] = change;
+          best.value[entry] = next[entry];
         }
       }
       last = next;
@@ -195,31 +206,48 @@ class TermChecker {
     for (const SecondEntry& entry : second_) {
       squares[entry.row] += (entry.a == entry.b ? 1.0 : 2.0) * entry.value * entry.value;
     }
+    VectorXd norms(static_cast<Index>(rows_.entries.size()));
+    for (Index k = 0; k < norms.size(); ++k) {
+      norms[k] = norms_[rows_.entries[static_cast<std::size_t>(k)].row];
+    }
     for (Index i = 0; i < count(); ++i) {
-      const Difference differences = difference(i, rows_.jacobian);
-      MatrixXd gaps = differences.value * scale_.asDiagonal();
-      const MatrixXd errors = differences.error * scale_.asDiagonal();
-      for (const SecondEntry& entry : second_) {
-        if (entry.a == i) {
-          gaps(entry.row, entry.b) -= entry.value;
-        } else if (entry.b == i) {
-          gaps(entry.row, entry.a) -= entry.value;
-        }
-      }
-      for (Index row = 0; row < gaps.rows(); ++row) {
+      for (const auto& [place, gap] : second_gaps(i, difference(i, rows_.partials, norms))) {
+        const auto& [row, j] = place;
         // Curvature that no difference of the partials can show counts as none.
         const double norm = squares[row] == 0.0
                                 ? norms_[row]
                                 : std::max(std::sqrt(squares[row]), 1e-6 * norms_[row]);
-        for (Index j = 0; j < count(); ++j) {
-          const double gap = std::abs(gaps(row, j)) / norm;
-          if (!is_unresolved(gap, errors(row, j) / norm)) {
-            note(gap, out_.second_gap, out_.second_gap_name,
-                 [&] { return concat(row_name(row), " by ", name(i), " and ", name(j)); });
-          }
+        const double share = std::abs(gap.value) / norm;
+        if (!is_unresolved(share, gap.error / norm)) {
+          note(share, out_.second_gap, out_.second_gap_name,
+               [&] { return concat(row_name(row), " by ", name(i), " and ", name(j)); });
         }
       }
     }
+  }
+
+  /// How far second partials with number i are from differences, wherever there are any.
+  struct Gap {
+    double value = 0.0;
+    double error = 0.0;
+  };
+  [[nodiscard]] std::map<PartialEntry, Gap> second_gaps(Index i,
+                                                        const Difference& differences) const {
+    std::map<PartialEntry, Gap> out;
+    for (Index k = 0; k < differences.value.size(); ++k) {
+      const PartialEntry& entry = rows_.entries[static_cast<std::size_t>(k)];
+      Gap& gap = out[entry];
+      gap.value += differences.value[k] * scale_[entry.number];
+      gap.error += differences.error[k] * scale_[entry.number];
+    }
+    for (const SecondEntry& entry : second_) {
+      if (entry.a == i) {
+        out[{entry.row, entry.b}].value -= entry.value;
+      } else if (entry.b == i) {
+        out[{entry.row, entry.a}].value -= entry.value;
+      }
+    }
+    return out;
   }
 
   /// The order of a remainder where ε is smallest and rounding does not count yet; infinite if it
@@ -303,10 +331,13 @@ TermCheck check_objective_term(const ObjectiveTerm& term, const TrajectoryValues
   TermRows rows;
   rows.names = {term.name()};
   rows.values = [&](const TrajectoryValues& at) { return VectorXd::Constant(1, term.value(at)); };
-  rows.jacobian = [&](const TrajectoryValues& at) -> MatrixXd {
+  for (Index number = 0; number < static_cast<Index>(all_places(values).size()); ++number) {
+    rows.entries.push_back({0, number});
+  }
+  rows.partials = [&](const TrajectoryValues& at) {
     TrajectoryPartials partials(at);
     term.add_partials(at, partials);
-    return flat(partials).transpose();
+    return flat(partials);
   };
   rows.second_places = [&] { return term.second_places(values); };
   rows.second = [&](const TrajectoryValues& at, Index count) {
@@ -318,7 +349,6 @@ TermCheck check_objective_term(const ObjectiveTerm& term, const TrajectoryValues
 }
 
 TermCheck check_constraint_term(const ConstraintTerm& term, const TrajectoryValues& values) {
-  const Index numbers = static_cast<Index>(all_places(values).size());
   TermRows rows;
   rows.names = term.rows().names;
   rows.values = [&](const TrajectoryValues& at) {
@@ -326,15 +356,13 @@ TermCheck check_constraint_term(const ConstraintTerm& term, const TrajectoryValu
     term.values(at, c);
     return c;
   };
-  rows.jacobian = [&](const TrajectoryValues& at) {
+  for (const PartialPlace& place : term.places()) {
+    rows.entries.push_back({place.row, number_of(values, place.place())});
+  }
+  rows.partials = [&](const TrajectoryValues& at) {
     VectorXd partials = unwritten(static_cast<Index>(term.places().size()));
     term.partials(at, partials);
-    MatrixXd J = MatrixXd::Zero(term.rows().size(), numbers);
-    for (std::size_t k = 0; k < term.places().size(); ++k) {
-      const PartialPlace& place = term.places()[k];
-      J(place.row, number_of(at, place.place())) += partials[static_cast<Index>(k)];
-    }
-    return J;
+    return partials;
   };
   rows.second_places = [&] { return term.second_places(); };
   rows.second = [&](const TrajectoryValues& at, Index count) {

@@ -89,6 +89,36 @@ TEST_F(CorpusCommand, MatricesOfOthersAreMeasuredToo) {
   }
 }
 
+TEST_F(CorpusCommand, AStructureIsWhatTheLineSaysOrTheFileBeside) {
+  fs::create_directory(path("other"));
+  write("other/m.mtx", "%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 3\n2 2 -5\n");
+  const auto structure = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"solvers", "--matrices", path("other"), "--solver",
+                                      "klu",     "--json",     path("r.json")};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = hbar(words);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return result("r.json").at("matrices")[0].at("structure").get<std::string>();
+  };
+  EXPECT_EQ(structure({}), "general");
+  EXPECT_EQ(structure({"--structure", "quasi_definite"}), "quasi_definite");
+  write("other/m.json", R"({"structure": "definite"})");
+  EXPECT_EQ(structure({}), "definite");
+  EXPECT_EQ(structure({"--structure", "general"}), "general");
+  // A solver's refusal counts rows as the file does.
+  ASSERT_EQ(hbar({"solvers", "--matrices", path("other"), "--solver", "cholmod_llt", "--json",
+                  path("r.json")})
+                .code,
+            0);
+  const json solver = result("r.json").at("matrices")[0].at("solvers")[0];
+  EXPECT_NE(solver.at("failure").get<std::string>().find("row 1 (2 in the file)"),
+            std::string::npos)
+      << solver;
+  EXPECT_EQ(hbar({"solvers", "--structure", "general"}).code, 2);
+  EXPECT_EQ(hbar({"solvers", "--matrices", path("other"), "--structure", "generel"}).err,
+            "hbar: --structure: there is no \"generel\"; did you mean 'general'?\n");
+}
+
 TEST_F(CorpusCommand, AnInterruptEndsBetweenMatrices) {
   Program program(folder_, words({"corpus", path("c"), "--size", "large"}));
   program.interrupt();

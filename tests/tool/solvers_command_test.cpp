@@ -219,7 +219,8 @@ TEST_F(SolversCommand, ABadSceneOrEmptyFolderExitsWithThree) {
   std::filesystem::create_directory(path("empty"));
   const Outcome empty = hbar({"solvers", "--matrices", path("empty")});
   EXPECT_EQ(empty.code, 3);
-  EXPECT_EQ(empty.err, "hbar: " + path("empty") + ": there is no Matrix Market file (NAME.mtx)\n");
+  EXPECT_EQ(empty.err, "hbar: " + path("empty") +
+                           ": there is no Matrix Market file (NAME.mtx or NAME.mtx.gz)\n");
 }
 
 TEST_F(SolversCommand, NeedsNoLargeStack) {

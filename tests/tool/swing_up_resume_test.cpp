@@ -33,7 +33,8 @@ TEST_F(Resume, AProgramThatWasKilledAtAnyMomentGoesOn) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   int resumed = 0;
-  for (int i = 0; i < 20; ++i) {
+  const int moments = std::getenv("HBAR_EVERY_FAULT") != nullptr ? 20 : 6;
+  for (int i = 0; i < moments; ++i) {
     std::filesystem::remove_all(results());
     Program killed(folder_, line(false));
     std::this_thread::sleep_for(std::chrono::duration<double>(share(random) * whole));
@@ -43,12 +44,12 @@ TEST_F(Resume, AProgramThatWasKilledAtAnyMomentGoesOn) {
     resumed += left ? 1 : 0;
     Program second(folder_, line(left));
     ASSERT_EQ(second.wait(), 0) << second.err() << second.out();
-    EXPECT_NE(read_file(solution()).find("status,optimal\n"), std::string::npos);
+    EXPECT_NE(read_file(solution()).find("status,optimal,"), std::string::npos);
     for (const auto& entry : std::filesystem::directory_iterator(results())) {
       EXPECT_FALSE(entry.path().filename().string().starts_with(".hbar-tmp-")) << entry.path();
     }
   }
-  EXPECT_GE(resumed, 5);
+  EXPECT_GE(resumed, moments / 4);
 }
 
 TEST_F(Resume, SigtermIsAsSigint) {
@@ -62,7 +63,7 @@ TEST_F(Resume, SigtermIsAsSigint) {
     }
     program.interrupt(signal);
     EXPECT_EQ(program.wait(), 130) << program.err();
-    EXPECT_NE(read_file(solution()).find("status,interrupted\n"), std::string::npos);
+    EXPECT_NE(read_file(solution()).find("status,interrupted,"), std::string::npos);
     EXPECT_TRUE(std::filesystem::exists(results() + "/trajectory.csv"));
   }
 }
@@ -74,12 +75,12 @@ TEST_F(Resume, OutputThatNobodyReadsStopsNoSolve) {
   ASSERT_EQ(std::system(command.c_str()), 0);
   EXPECT_EQ(read_file(path("code")), "6\n");
   EXPECT_EQ(read_file(path("err")), "");
-  EXPECT_NE(read_file(solution()).find("status,optimal\n"), std::string::npos);
+  EXPECT_NE(read_file(solution()).find("status,optimal,"), std::string::npos);
 
   Program full(folder_, line(false), "/dev/full");
   EXPECT_EQ(full.wait(), 6);
   EXPECT_EQ(full.err(), "swing_up: standard output: cannot be written: No space left on device\n");
-  EXPECT_NE(read_file(solution()).find("status,optimal\n"), std::string::npos);
+  EXPECT_NE(read_file(solution()).find("status,optimal,"), std::string::npos);
 }
 
 TEST_F(Resume, ResultsThatCannotBeWrittenAreRefusedBeforeTheWork) {

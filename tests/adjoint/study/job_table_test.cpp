@@ -76,8 +76,8 @@ TEST(JobTable, ThatWasDamagedIsRefusedWithThePlace) {
   EXPECT_EQ(refusal("1,lost,2,3,4,,,"), "t.csv:3:3: \"lost\" is not converged, ended or failed");
   EXPECT_EQ(refusal("1,ended,2,3x,4,,,"), "t.csv:3:11: \"3x\" is not a finite number");
   EXPECT_EQ(
-      refusal("1,ended,2,3,4,,00000000"),
-      "t.csv:3:16: this line was changed or damaged after it was written: its checksum is "
+      refusal("1,ended,2,3,4,,,00000000"),
+      "t.csv:3:17: this line was changed or damaged after it was written: its checksum is "
       "\"00000000\" and not 1a55bc6f; restore it, or empty this cell to take the line as it is");
   EXPECT_EQ(refusal("1,ended,2,3"), "t.csv:3:11: a line of 4 cells; the heading has 8");
 }

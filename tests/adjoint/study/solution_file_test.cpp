@@ -118,7 +118,7 @@ TEST_F(SolutionFile, IsRefusedWhereverItWasCut) {
     EXPECT_NE(refusal(whole.substr(0, length)), "") << length << " of " << whole.size() << " bytes";
   }
   EXPECT_EQ(refusal("hbar-solution,3\nvariable,x0,1,0,0,\nconstraint,c,0.13,\n"),
-            ":3:14: this solution is not whole: after 1 variables and 1 constraints there is no "
+            ":3:19: this solution is not whole: after 1 variables and 1 constraints there is no "
             "line \"end\" that counts them");
 }
 
