@@ -18,12 +18,17 @@ struct FaultyCommand {
 
 void PrintTo(const FaultyCommand& command, std::ostream* out) { *out << command.name; }
 
+bool every_place() { return std::getenv("HBAR_EVERY_FAULT") != nullptr; }
+
+/// Short runs where every place is tried, and runs that use more of hbar where a sample is.
 std::vector<FaultyCommand> faulty_commands() {
+  const std::string contact = scene(every_place() ? "pendulum" : "walker");
+  const std::string arm = scene(every_place() ? "double_pendulum" : "arm");
   std::vector<FaultyCommand> out = {
-      {"info", {"info", scene("walker")}, true},
-      {"simulate", {"simulate", scene("walker"), "--steps", "4", "--out", "r", "--csv", "c"}, true},
+      {"info", {"info", contact}, true},
+      {"simulate", {"simulate", contact, "--steps", "2", "--out", "r", "--csv", "c"}, true},
       {"gradient",
-       {"gradient", scene("arm"), "--steps", "3", "--params", "all", "--out", "r", "--csv", "c"},
+       {"gradient", arm, "--steps", "1", "--params", "all", "--out", "r", "--csv", "c"},
        true},
       {"check",
        {"check", scene("pendulum"), "--steps", "1", "--q0", "0.5", "--params", "gravity", "--out",
@@ -36,8 +41,9 @@ std::vector<FaultyCommand> faulty_commands() {
        true});
   // Without MUMPS and Eigen's sparse LU, which do not survive an allocation that fails.
   out.push_back({"solvers",
-                 {"solvers", "--family", "chain", "--dof", "2", "--steps", "3", "--system",
-                  "adjoint,kkt", "--solver", "auto,klu,lapack_band,block_banded", "--json", "r"},
+                 {"solvers", "--family", "chain", "--dof", "1", "--steps", "1", "--system",
+                  "adjoint", "--solver", "auto,klu,lapack_band,block_banded", "--repeat", "1",
+                  "--rhs", "1", "--json", "r"},
                  false});
 #endif
   return out;
@@ -87,7 +93,7 @@ class Faults : public ToolTest, public ::testing::WithParamInterface<FaultyComma
   /// Places 1 … count, or some of them.
   [[nodiscard]] static std::vector<long> places(long count, long sample) {
     std::vector<long> out;
-    if (count <= sample || std::getenv("HBAR_EVERY_FAULT") != nullptr) {
+    if (count <= sample || every_place()) {
       for (long k = 1; k <= count; ++k) {
         out.push_back(k);
       }
