@@ -48,7 +48,7 @@ class ExclusiveRun {
   std::unique_lock<std::mutex> lock_;
 };
 
-using Vector = Eigen::Map<const Eigen::VectorXd>;
+using Input = Eigen::Map<const Eigen::VectorXd>;
 using Output = Eigen::Map<Eigen::VectorXd>;
 
 /// An Nlp as Ipopt sees it: scaled, in C arrays, false for failure.
@@ -108,17 +108,17 @@ class Adapter final : public Ipopt::TNLP {
 
   bool eval_f(Index, const Number* x, bool, Number& value) override {
     const Unlocked callback(mumps_);
-    return !must_stop() && program_.scaled_objective(Vector(x, n()), value);
+    return !must_stop() && program_.scaled_objective(Input(x, n()), value);
   }
 
   bool eval_grad_f(Index, const Number* x, bool, Number* gradient) override {
     const Unlocked callback(mumps_);
-    return !must_stop() && program_.scaled_gradient(Vector(x, n()), Output(gradient, n()));
+    return !must_stop() && program_.scaled_gradient(Input(x, n()), Output(gradient, n()));
   }
 
   bool eval_g(Index, const Number* x, bool, Index, Number* values) override {
     const Unlocked callback(mumps_);
-    return !must_stop() && program_.scaled_constraints(Vector(x, n()), Output(values, m()));
+    return !must_stop() && program_.scaled_constraints(Input(x, n()), Output(values, m()));
   }
 
   bool eval_jac_g(Index, const Number* x, bool, Index, Index entries, Index* rows, Index* columns,
@@ -127,7 +127,7 @@ class Adapter final : public Ipopt::TNLP {
       return copy_pattern(program_.jacobian_pattern(), rows, columns);
     }
     const Unlocked callback(mumps_);
-    return !must_stop() && program_.scaled_jacobian(Vector(x, n()), Output(values, entries));
+    return !must_stop() && program_.scaled_jacobian(Input(x, n()), Output(values, entries));
   }
 
   bool eval_h(Index, const Number* x, bool, Number sigma, Index, const Number* lambda, bool,
@@ -139,7 +139,7 @@ class Adapter final : public Ipopt::TNLP {
       return copy_pattern(program_.hessian_pattern(), rows, columns);
     }
     const Unlocked callback(mumps_);
-    return !must_stop() && program_.scaled_hessian(Vector(x, n()), sigma, Vector(lambda, m()),
+    return !must_stop() && program_.scaled_hessian(Input(x, n()), sigma, Input(lambda, m()),
                                                    Output(values, entries));
   }
 
@@ -177,11 +177,11 @@ class Adapter final : public Ipopt::TNLP {
   void finalize_solution(Ipopt::SolverReturn, Index, const Number* x, const Number* z_L,
                          const Number* z_U, Index, const Number*, const Number* lambda, Number,
                          const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
-    last_.x = Vector(x, n());
-    last_.lower_multipliers = Vector(z_L, n());
-    last_.upper_multipliers = Vector(z_U, n());
+    last_.x = Input(x, n());
+    last_.lower_multipliers = Input(z_L, n());
+    last_.upper_multipliers = Input(z_U, n());
     if (m() > 0) {
-      last_.constraint_multipliers = Vector(lambda, m());
+      last_.constraint_multipliers = Input(lambda, m());
     }
     finished_ = true;
   }

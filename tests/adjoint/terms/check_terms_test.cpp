@@ -140,7 +140,7 @@ TEST_F(CheckTerms, RefusesPlacesThatAreNotThere) {
 /// Rates of three coordinates over two steps that differ in size.
 TrajectoryValues rates(double scale) {
   TrajectoryValues values = testing::random_values(9);
-  values.qdot.leftCols(3) << 0, 0.9, 0.5, 0, -0.4, 0.3, 0, 0.2, -0.8;
+  values.qdot.topLeftCorner(3, 3) << 0, 0.9, 0.5, 0, -0.4, 0.3, 0, 0.2, -0.8;
   values.qdot *= scale;
   return values;
 }

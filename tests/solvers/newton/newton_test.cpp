@@ -214,13 +214,15 @@ TEST(Newton, StopsAtTheIterationLimit) {
 }
 
 TEST(Newton, StallsWhereThereIsNoRoot) {
-  ScriptedSystem system =
-      scalar_system([](double x) { return x * x + 1.0; }, [](double x) { return 2.0 * x; });
+  // From 0.5 by way of -0.25 to 0.0625, where an eighth of the step is still too long.
+  ScriptedSystem system = scalar_system([](double x) { return 1.0 + std::abs(x); },
+                                        [](double x) { return x < 0.0 ? -1.0 : 1.0; });
   NewtonOptions options;
   options.max_ls = 3;
   VectorXd x = VectorXd::Constant(1, 0.5);
   const NewtonReport report = Newton(1).solve(system, options, x);
   EXPECT_EQ(report.status, NewtonStatus::kLineSearch);
+  EXPECT_EQ(report.iterations, 3);
   EXPECT_FALSE(report.converged());
 }
 
