@@ -43,6 +43,7 @@ class Program {
     argv.push_back(nullptr);
     process_ = ::fork();
     if (process_ == 0) {
+      ::signal(SIGHUP, SIG_DFL);  // the tests may have been started by nohup, which ignores it
       redirect(out_, STDOUT_FILENO);
       redirect(err_, STDERR_FILENO);
       if (memory > 0) {
