@@ -212,7 +212,8 @@ class TermChecker {
     }
     for (Index i = 0; i < count(); ++i) {
       for (const auto& [place, gap] : second_gaps(i, difference(i, rows_.partials, norms))) {
-        const auto& [row, j] = place;
+        const int row = place.row;
+        const Index j = place.number;
         // Curvature that no difference of the partials can show counts as none.
         const double norm = squares[row] == 0.0
                                 ? norms_[row]
