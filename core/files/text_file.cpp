@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <memory>
+#include <new>
 #include <system_error>
 
 #include "hbar/core/base/error.h"
@@ -16,6 +17,9 @@ std::string read_text_file(const std::filesystem::path& path) {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   const std::unique_ptr<std::FILE, Closer> file(std::fopen(path.c_str(), "rb"));
+  if (!file && errno == ENOMEM) {
+    throw std::bad_alloc();
+  }
   if (!file) {
     throw IoError(concat(path.string(), ": cannot be opened: ", reason(errno)));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
 #include <set>
 #include <system_error>
 
@@ -148,6 +149,9 @@ std::vector<fs::path> find_matrix_files(const fs::path& folder) {
     if (!name.empty()) {
       names.insert(name);
     }
+  }
+  if (code == std::errc::not_enough_memory) {
+    throw std::bad_alloc();
   }
   if (code) {
     throw IoError(concat(folder.string(), ": cannot be read: ", code.message()));

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <new>
 
 #include "hbar/core/base/error.h"
 
@@ -25,7 +26,7 @@ std::string read_gzip_file(const std::filesystem::path& path) {
   errno = 0;
   const std::unique_ptr<gzFile_s, Close> file(::gzopen(path.c_str(), "rb"));
   if (file == nullptr) {
-    if (errno == 0) {  // zlib's own
+    if (errno == 0 || errno == ENOMEM) {  // zlib tells its own want of memory by no code
       throw std::bad_alloc();
     }
     throw IoError(concat(path.string(), ": cannot be opened: ", std::strerror(errno)));
