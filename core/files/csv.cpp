@@ -125,7 +125,8 @@ std::vector<CsvRow> parse_csv(std::string_view text, const std::string& file) {
 
 std::string csv_cell(std::string_view text) {
   const bool plain = text.find_first_of(",;\"\r\n") == std::string_view::npos &&
-                     without_blanks(text).size() == text.size() && text.substr(0, 1) != "#";
+                     without_blanks(text).size() == text.size() && text.substr(0, 1) != "#" &&
+                     !text.starts_with("\xef\xbb\xbf");
   if (plain) {
     return std::string(text);
   }

@@ -76,6 +76,7 @@ TEST(Csv, ReadsTablesOfSpreadsheets) {
             (std::vector<std::vector<std::string>>{{"a;b", "c"}, {"1;2", "3"}}));
   EXPECT_EQ(texts("# a; b, c\ntime;x"), (std::vector<std::vector<std::string>>{{"time", "x"}}));
   EXPECT_EQ(csv_cell("a;b"), "\"a;b\"");
+  EXPECT_EQ(csv_cell("\xef\xbb\xbf#"), "\"\xef\xbb\xbf#\"") << "would be a mark and a comment";
 }
 
 }  // namespace
