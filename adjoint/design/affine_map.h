@@ -24,8 +24,7 @@ struct ParameterBounds {
 ///
 /// @param bounds  for some of them, within the set's own bounds, which apply to the others
 /// @throws InvalidInput for a name that is not in the set, bounds that exclude the nominal value,
-/// or
-///         a negative lower bound of what cannot be negative
+///   or a negative lower bound of what cannot be negative
 [[nodiscard]] DesignMapPointer parameter_map(const ParameterSet& set,
                                              const std::vector<ParameterBounds>& bounds = {});
 

@@ -71,8 +71,8 @@ class ParameterSet {
 void require_parameters_of(const Model& model, const ParameterSet& set);
 
 /// @param p  values of the set's parameters                                     [set.size()]
-/// @throws InvalidInput naming the first parameter that is negative and must not be (contact
-///   coefficients and scales) or not positive and must be (sizes)
+/// @throws InvalidInput naming the first parameter that is negative and must not be (stiffness,
+///   damping, motor gains, contact coefficients and scales) or not positive and must be (sizes)
 void require_in_range(const ParameterSet& set, const Eigen::VectorXd& p);
 
 /// Sets to 0 what require_in_range would refuse for being negative by less than 1e-6 of its nominal
